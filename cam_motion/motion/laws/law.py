@@ -1,0 +1,217 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The motion law: a normalised rise s(xi), and the registry of all laws by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+import math
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.motion.piece import Array
+from cam_motion.motion.piecewise import JOINT_TOLERANCE, Piecewise
+from cam_motion.motion.laws.parameters import LawParameter
+
+Builder = Callable[..., Piecewise]
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """
+    The characteristic values of a law between two dwells.
+
+    A real movement of lift h in time T has the peaks ``cv h/T``, ``ca h/T²``, ``cj h/T³``.
+
+    Attributes
+    ----------
+    cv, ca, cj : float
+        Largest magnitudes of s', s'', s''' [-]; infinite where the derivative before steps.
+    cj_inside : float
+        Largest magnitude of s''' between the steps [-].
+    power : float
+        Largest magnitude of s' s'' [-]: the power that an inertia takes.
+    rms_acceleration : float
+        Root mean square of s'' [-]: what heats a servo motor.
+
+    """
+
+    cv: float
+    ca: float
+    cj: float
+    cj_inside: float
+    power: float
+    rms_acceleration: float
+
+
+@dataclass(frozen=True)
+class MotionLaw:
+    """
+    A normalised rise s(xi) for 0 <= xi <= 1, with s(0) = 0 and s(1) = 1 (a dwell stays at 0).
+
+    Attributes
+    ----------
+    name : str
+        Name in the registry.
+    parameters : Mapping[str, Any]
+        The law's parameters, defaults filled in.
+    curve : Piecewise
+        The rise as an exact curve.
+
+    """
+
+    name: str
+    parameters: Mapping[str, Any]
+    curve: Piecewise
+
+    def __call__(self, xi: ArrayLike, order: int = 0) -> Array:
+        """
+        Evaluate the law.
+
+        Parameters
+        ----------
+        xi : array_like, any shape
+            Normalised time or angle [-], within 0 to 1.
+        order : int
+            Order of the derivative with respect to xi.
+
+        Returns
+        -------
+        ndarray, shape of xi
+            Values [-].
+
+        Raises
+        ------
+        DomainError
+            When xi leaves the range 0 to 1.
+
+        """
+        return self.curve(xi, order)
+
+    @cached_property
+    def coefficients(self) -> Coefficients:
+        """The law's characteristic values, exact to rounding."""
+        curve = self.curve
+        scale = max(abs(curve.peak(1).value), 1e-300)
+        steps_velocity = bool(curve.jumps(1)) or any(
+            abs(end) > JOINT_TOLERANCE * scale for end in curve.end_values(1)
+        )
+        ca = abs(curve.peak(2).value)
+        steps_acceleration = steps_velocity or bool(curve.jumps(2)) or any(
+            abs(end) > JOINT_TOLERANCE * ca for end in curve.end_values(2)
+        )
+        cj_inside = abs(curve.peak(3).value)
+        return Coefficients(
+            cv=abs(curve.peak(1).value),
+            ca=math.inf if steps_velocity else ca,
+            cj=math.inf if steps_acceleration else cj_inside,
+            cj_inside=cj_inside,
+            power=math.inf if steps_velocity else abs(curve.peak_power().value),
+            rms_acceleration=math.inf if steps_velocity else curve.rms(2),
+        )
+
+
+@dataclass(frozen=True)
+class LawType:
+    """
+    A family of laws as the registry knows it.
+
+    Attributes
+    ----------
+    name : str
+        Name in configurations, snake case.
+    summary : str
+        What it is, in one line.
+    source : str
+        Where the formula stands.
+    parameters : tuple[LawParameter, ...]
+        The parameters that it takes.
+    build : Callable[..., Piecewise]
+        Makes the rise from the parameters; raises `ConfigurationError` where they do not fit
+        together.
+
+    """
+
+    name: str
+    summary: str
+    source: str
+    parameters: tuple[LawParameter, ...]
+    build: Builder
+
+
+LAWS: dict[str, LawType] = {}
+"""All registered laws by name."""
+
+
+def register(
+    name: str, summary: str, source: str, *parameters: LawParameter
+) -> Callable[[Builder], Builder]:
+    """
+    Register the decorated builder as a law.
+
+    Parameters
+    ----------
+    name, summary, source : str
+        See `LawType`.
+    *parameters : LawParameter
+        The parameters of the builder, in order.
+
+    Returns
+    -------
+    Callable
+        A decorator that returns the builder unchanged.
+
+    """
+    def enter(build: Builder) -> Builder:
+        LAWS[name] = LawType(name, summary, source, parameters, build)
+        return build
+    return enter
+
+
+def make_law(name: str, **parameters: Any) -> MotionLaw:
+    """
+    Make a motion law by name.
+
+    Parameters
+    ----------
+    name : str
+        A name in `LAWS`.
+    **parameters : Any
+        The law's parameters; those left out take their defaults.
+
+    Returns
+    -------
+    MotionLaw
+        The law.
+
+    Raises
+    ------
+    ConfigurationError
+        When the name is unknown, or a parameter is unknown, of the wrong type, or out of range;
+        all problems are listed, with paths relative to the segment.
+
+    """
+    if name not in LAWS:
+        raise ConfigurationError([Problem(
+            'law', name, 'a law must be one that is known', 'known are: ' + ', '.join(LAWS)
+        )])
+    law = LAWS[name]
+    known = {parameter.name: parameter for parameter in law.parameters}
+    problems = [
+        Problem(key, value, f'the law {name} has no such parameter',
+                'it takes ' + (', '.join(known) or 'none'))
+        for key, value in parameters.items() if key not in known
+    ]
+    values: dict[str, Any] = {}
+    for key, parameter in known.items():
+        try:
+            values[key] = parameter.check(parameters.get(key))
+        except ConfigurationError as error:
+            problems += error.problems
+    if problems:
+        raise ConfigurationError(problems)
+    return MotionLaw(name, values, law.build(**values))

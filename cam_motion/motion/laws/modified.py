@@ -1,0 +1,83 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The modified trapezoid: seven stages of acceleration, sinusoidal and constant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+import math
+
+from cam_motion.motion.laws.law import register
+from cam_motion.motion.laws.parameters import LawParameter, SUM_TOLERANCE
+from cam_motion.motion.piece import Piece, Wave
+from cam_motion.motion.piecewise import from_acceleration, Piecewise
+
+_FRACTIONS = LawParameter(
+    'fractions', (0.125, 0.25, 0.125, 0.0, 0.125, 0.25, 0.125),
+    'seven stage lengths, each from 0 to 1, that sum to 1; the first three and the last three '
+    'must not all be 0', count=7,
+)
+
+
+@register('modified_trapezoid', 'seven stages of acceleration: sine, constant, sine, zero, and back',
+          'document 000, ModTVP; document 001, modified trapezoidal (seven parameters)', _FRACTIONS)
+def modified_trapezoid(fractions: tuple[float, ...]) -> Piecewise:
+    """
+    Build the modified trapezoidal law from its seven stages.
+
+    Parameters
+    ----------
+    fractions : tuple[float, ...], 7 values
+        Lengths of the stages as shares of the span [-]. Stages 1 and 5 are quarter sines that
+        grow, 3 and 7 quarter sines that fade, 2 and 6 constant, 4 has no acceleration. Stages
+        of length zero drop out.
+
+    Returns
+    -------
+    Piecewise
+        The rise from 0 to 1, at rest at both ends.
+
+    Raises
+    ------
+    ConfigurationError
+        When the fractions do not sum to 1, or one half of the law has no length.
+
+    Notes
+    -----
+    With k1 = 2 x1/pi + x2 + 2 x3/pi and k2 = 2 x5/pi + x6 + 2 x7/pi, the plateaus stand as
+    A/B = k2/k1, so that the velocity returns to zero; the scale follows from s(1) = 1.
+    Members of the family are the cycloidal law (1/4, 0, 1/4, 0, 1/4, 0, 1/4), constant
+    acceleration (0, 1/2, 0, 0, 0, 1/2, 0), trapezoidal velocity (0, e, 0, 1 - 2e, 0, e, 0) and
+    the simple harmonic law (0, 0, 1/2, 0, 1/2, 0, 0).
+
+    References
+    ----------
+    P. L. Magnani, G. Ruggieri, Meccanismi per macchine automatiche (1986), from page 108;
+    document 000.
+
+    """
+    total = math.fsum(fractions)
+    if abs(total - 1.0) > SUM_TOLERANCE:
+        raise _FRACTIONS.problem(list(fractions), f'they sum to {total:.9g}')
+    x1, x2, x3, x4, x5, x6, x7 = (x / total for x in fractions)
+    if x1 + x2 + x3 == 0.0 or x5 + x6 + x7 == 0.0:
+        raise _FRACTIONS.problem(list(fractions), 'give both halves some length')
+    area_up = 2.0 / math.pi * (x1 + x3) + x2
+    area_down = 2.0 / math.pi * (x5 + x7) + x6
+    rise = from_acceleration([
+        *_half(1.0 / area_up, x1, x2, x3),
+        *([Piece(x4)] if x4 > 0.0 else []),
+        *_half(-1.0 / area_down, x5, x6, x7),
+    ])
+    # the joints that rounding of the running sum would leave a hair beside 1
+    return Piecewise(0.0, rise.pieces, (*rise.breaks[:-1], 1.0))
+
+
+def _half(plateau: float, grow: float, hold: float, fade: float) -> Iterator[Piece]:
+    """Give one half of the acceleration diagram: quarter sine, constant, quarter sine."""
+    if grow > 0.0:
+        yield Piece(grow, (), (Wave(0.5 * math.pi / grow, 0.0, plateau),))
+    if hold > 0.0:
+        yield Piece(hold, (plateau,))
+    if fade > 0.0:
+        yield Piece(fade, (), (Wave(0.5 * math.pi / fade, plateau, 0.0),))

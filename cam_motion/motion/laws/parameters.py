@@ -1,0 +1,94 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters of motion laws and the checks on them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+import math
+from typing import Any
+
+from cam_motion.errors import ConfigurationError, Problem
+
+# Printed fractions such as 0.143 seven times are meant to sum to one; what rounding in the
+# last printed digit cannot explain is a mistake.
+SUM_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class LawParameter:
+    """
+    One parameter of a law: a fraction of the span, or several of them.
+
+    Attributes
+    ----------
+    name : str
+        Key in the configuration.
+    default : float | tuple[float, ...] | None
+        Value when left out; None lets the law derive it from the others.
+    rule : str
+        What is allowed, for people.
+    count : int
+        0 for a single number, else how many numbers the list holds.
+
+    """
+
+    name: str
+    default: float | tuple[float, ...] | None
+    rule: str
+    count: int = 0
+
+    def check(self, value: Any) -> float | tuple[float, ...] | None:
+        """
+        Check a given value.
+
+        Parameters
+        ----------
+        value : Any
+            What the user gave; None if nothing.
+
+        Returns
+        -------
+        float | tuple[float, ...] | None
+            The value cleaned, or the default.
+
+        Raises
+        ------
+        ConfigurationError
+            When it is not a number (or that many numbers) from 0 to 1.
+
+        """
+        if value is None:
+            return self.default
+        numbers = [value] if self.count == 0 else value
+        if isinstance(numbers, str) or not isinstance(numbers, Sequence) or (
+            self.count and len(numbers) != self.count
+        ):
+            raise self.problem(value)
+        for number in numbers:
+            if isinstance(number, bool) or not isinstance(number, (int, float)) or not (
+                math.isfinite(number) and 0.0 <= number <= 1.0
+            ):
+                raise self.problem(value)
+        cleaned = tuple(float(number) for number in numbers)
+        return cleaned if self.count else cleaned[0]
+
+    def problem(self, value: Any, hint: str = '') -> ConfigurationError:
+        """
+        Say that a value breaks the rule.
+
+        Parameters
+        ----------
+        value : Any
+            The value.
+        hint : str
+            A way out.
+
+        Returns
+        -------
+        ConfigurationError
+            To be raised.
+
+        """
+        return ConfigurationError([Problem(self.name, value, self.rule, hint)])

@@ -1,0 +1,390 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The exact curve: pieces joined end to end, evaluated, differentiated and searched exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from itertools import accumulate
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cam_motion.errors import DomainError
+from cam_motion.motion.compiled import compile_sampler, Sample, Sampler
+from cam_motion.motion.piece import Array, find_zeros, Piece
+
+JOINT_TOLERANCE = 1e-9
+"""Steps at joints below this share of the curve's own peak are rounding, not steps."""
+
+_TIE = 1e-12  # peaks this close (relative) count as equal; the first one is reported
+_EDGE = 1e-12  # how far (relative) an argument may lie outside the curve by rounding
+_BLOCK = 16384  # points evaluated at a time: small enough to stay in a core's cache
+
+
+class Peak(NamedTuple):
+    """An extreme value and where it occurs."""
+
+    value: float
+    at: float
+
+
+class Jump(NamedTuple):
+    """A step of a derivative at a joint: where, which order, by how much."""
+
+    at: float
+    order: int
+    amount: float
+
+
+class Piecewise:
+    """
+    A curve made of exact pieces.
+
+    Parameters
+    ----------
+    start : float
+        Abscissa of the first piece's beginning.
+    pieces : Iterable[Piece]
+        The pieces in order, at least one; their lengths place the joints.
+    breaks : Sequence[float], optional
+        The joints, both ends included, where the sum of the lengths would round differently.
+
+    """
+
+    def __init__(
+        self, start: float, pieces: Iterable[Piece], breaks: Sequence[float] | None = None
+    ) -> None:
+        """Place the pieces one behind the other."""
+        self.pieces = tuple(pieces)
+        if not self.pieces:
+            raise DomainError('a curve needs at least one piece')
+        lengths = (piece.length for piece in self.pieces)
+        self.breaks = tuple(accumulate(lengths, initial=start) if breaks is None else breaks)
+
+    @property
+    def start(self) -> float:
+        """Abscissa at which the curve begins."""
+        return self.breaks[0]
+
+    @property
+    def end(self) -> float:
+        """Abscissa at which the curve ends."""
+        return self.breaks[-1]
+
+    @cached_property
+    def sample(self) -> Sampler:
+        """``sample(x)`` gives (y, y', y'', y''') for one float, compiled for speed."""
+        return compile_sampler(self.breaks, self.pieces)
+
+    @cached_property
+    def derivative(self) -> Piecewise:
+        """The derivative of the curve, piece by piece; steps at joints leave no trace in it."""
+        pieces = [piece.derivative for piece in self.pieces]
+        return Piecewise(self.start, pieces, self.breaks)
+
+    def differentiated(self, order: int) -> Piecewise:
+        """
+        Differentiate several times.
+
+        Parameters
+        ----------
+        order : int
+            How many times; 0 gives the curve itself.
+
+        Returns
+        -------
+        Piecewise
+            The derivative of that order.
+
+        """
+        return self if order == 0 else self.derivative.differentiated(order - 1)
+
+    def __call__(self, x: ArrayLike, order: int = 0) -> Array:
+        """
+        Evaluate the curve or one of its derivatives.
+
+        Parameters
+        ----------
+        x : array_like, any shape
+            Abscissae within the curve's range.
+        order : int
+            Order of the derivative, 0 or more. At a joint the value from the right is given
+            (at the very end, from the left).
+
+        Returns
+        -------
+        ndarray, shape of x
+            Values of that derivative.
+
+        Raises
+        ------
+        DomainError
+            When an abscissa lies outside the curve.
+
+        """
+        points = np.asarray(x, dtype=float)
+        edge = _EDGE * max(abs(self.start), abs(self.end), self.end - self.start)
+        if points.size and (points.min() < self.start - edge or points.max() > self.end + edge):
+            raise DomainError(
+                f'the curve is defined from {self.start:g} to {self.end:g}; asked for '
+                f'{points.min():g} to {points.max():g}'
+            )
+        return self.evaluate(points, order)
+
+    def evaluate(self, points: Array, order: int = 0) -> Array:
+        """
+        Evaluate without looking at the range; beyond its ends the end pieces go on.
+
+        Parameters
+        ----------
+        points : ndarray, any shape
+            Abscissae.
+        order : int
+            Order of the derivative.
+
+        Returns
+        -------
+        ndarray, shape of points
+            Values of that derivative.
+
+        """
+        pieces = self.differentiated(order).pieces
+        flat = np.ascontiguousarray(points).reshape(-1)
+        values = np.empty_like(flat)
+        for piece, begin, chosen in self._runs(flat):
+            if isinstance(chosen, slice):
+                for low in range(chosen.start, chosen.stop, _BLOCK):
+                    block = slice(low, min(low + _BLOCK, chosen.stop))
+                    values[block] = pieces[piece](flat[block] - begin)
+            else:
+                values[chosen] = pieces[piece](flat[chosen] - begin)
+        return values.reshape(points.shape)
+
+    def _runs(self, flat: Array) -> Iterator[tuple[int, float, slice | Array]]:
+        """Give (piece, its start, which points lie in it); slices where the points are sorted."""
+        inner = np.array(self.breaks[1:-1])
+        descents = np.flatnonzero(~(flat[1:] >= flat[:-1])) + 1
+        if descents.size <= flat.size // 256:
+            for low, high in zip([0, *descents], [*descents, flat.size]):
+                cuts = low + np.searchsorted(flat[low:high], inner, side='left')
+                for piece, (first, last) in enumerate(zip([low, *cuts], [*cuts, high])):
+                    if first < last:
+                        yield piece, self.breaks[piece], slice(int(first), int(last))
+            return
+        piece_of = np.searchsorted(inner, flat, side='right').astype(np.uint16)
+        by_piece = np.argsort(piece_of, kind='stable')
+        cuts = np.searchsorted(piece_of[by_piece], np.arange(len(self.pieces) + 1))
+        for piece, (first, last) in enumerate(zip(cuts[:-1], cuts[1:])):
+            if first < last:
+                yield piece, self.breaks[piece], by_piece[first:last]
+
+    def scaled(self, span: float, lift: float, start: float = 0.0, offset: float = 0.0,
+               ) -> Piecewise:
+        """
+        Fit the curve into another span and lift.
+
+        Parameters
+        ----------
+        span : float
+            New length of the curve; positive.
+        lift : float
+            Factor on the values.
+        start : float
+            New abscissa of the beginning.
+        offset : float
+            Added to the scaled values.
+
+        Returns
+        -------
+        Piecewise
+            The scaled curve.
+
+        """
+        stretch = span / (self.end - self.start)
+        pieces = [piece.scaled(stretch, lift, offset) for piece in self.pieces]
+        breaks = [start + stretch * (x - self.start) for x in self.breaks]
+        breaks[-1] = start + span
+        return Piecewise(start, pieces, breaks)
+
+    def candidates(self, order: int) -> Iterator[Peak]:
+        """
+        List one-sided end values and stationary values of a derivative, from left to right.
+
+        Parameters
+        ----------
+        order : int
+            Order of the derivative.
+
+        Yields
+        ------
+        Peak
+            All local extremes are among them.
+
+        """
+        curve = self.differentiated(order)
+        for begin, piece in zip(self.breaks, curve.pieces):
+            for u in (0.0, *sorted(piece.derivative.zeros()), piece.length):
+                yield Peak(piece.at(u), begin + u)
+
+    def extremes(self, order: int) -> tuple[Peak, Peak]:
+        """
+        Find the least and the greatest value of a derivative.
+
+        Parameters
+        ----------
+        order : int
+            Order of the derivative.
+
+        Returns
+        -------
+        tuple[Peak, Peak]
+            Least and greatest, each with its (first) abscissa. At steps the one-sided values
+            count.
+
+        """
+        points = list(self.candidates(order))
+        slack = _TIE * max(abs(point.value) for point in points)
+        least, greatest = min(p.value for p in points), max(p.value for p in points)
+        return (
+            next(p for p in points if p.value <= least + slack),
+            next(p for p in points if p.value >= greatest - slack),
+        )
+
+    def peak(self, order: int) -> Peak:
+        """
+        Find the value of a derivative that is largest in magnitude, with its sign.
+
+        Parameters
+        ----------
+        order : int
+            Order of the derivative.
+
+        Returns
+        -------
+        Peak
+            The signed value and its abscissa; of equal ones, the first.
+
+        """
+        points = list(self.candidates(order))
+        largest = max(abs(point.value) for point in points)
+        return next(p for p in points if abs(p.value) >= largest * (1.0 - _TIE))
+
+    def peak_power(self) -> Peak:
+        """
+        Find the largest magnitude of the product y' y'' (power of an inertia per unit mass).
+
+        Returns
+        -------
+        Peak
+            The signed product and its abscissa; of equal ones, the first.
+
+        """
+        points: list[Peak] = []
+        for begin, piece in zip(self.breaks, self.pieces):
+            v = piece.derivative
+            a, j = v.derivative, v.derivative.derivative
+            zeros = [] if v.is_zero or a.is_zero else find_zeros(
+                lambda u, v=v, a=a, j=j: a(u) ** 2 + v(u) * j(u),
+                lambda u, v=v, a=a, j=j: 3.0 * a(u) * j(u) + v(u) * j.derivative(u),
+                piece.stretches(),
+            )
+            points += [Peak(v.at(u) * a.at(u), begin + u)
+                       for u in (0.0, *sorted(zeros), piece.length)]
+        largest = max(abs(point.value) for point in points)
+        return next(p for p in points if abs(p.value) >= largest * (1.0 - _TIE))
+
+    def rms(self, order: int) -> float:
+        """
+        Take the root of the mean square of a derivative over the whole curve.
+
+        Parameters
+        ----------
+        order : int
+            Order of the derivative.
+
+        Returns
+        -------
+        float
+            Root mean square, exact to rounding.
+
+        """
+        curve = self.differentiated(order)
+        total = sum(piece.mean_square() * piece.length for piece in curve.pieces)
+        return math.sqrt(total / (self.end - self.start))
+
+    def jumps(self, order: int) -> list[Jump]:
+        """
+        List the steps of a derivative at the inner joints.
+
+        Parameters
+        ----------
+        order : int
+            Order of the derivative.
+
+        Returns
+        -------
+        list[Jump]
+            Steps larger than `JOINT_TOLERANCE` of that derivative's own peak.
+
+        """
+        curve = self.differentiated(order)
+        slack = JOINT_TOLERANCE * abs(self.peak(order).value)
+        steps = (
+            Jump(at, order, right.at(0.0) - left.at(left.length))
+            for at, left, right in zip(self.breaks[1:], curve.pieces, curve.pieces[1:])
+        )
+        return [step for step in steps if abs(step.amount) > slack]
+
+    def end_values(self, order: int) -> tuple[float, float]:
+        """
+        Give the values of a derivative at both ends.
+
+        Parameters
+        ----------
+        order : int
+            Order of the derivative.
+
+        Returns
+        -------
+        tuple[float, float]
+            Value at the start and at the end.
+
+        """
+        pieces = self.differentiated(order).pieces
+        return pieces[0].at(0.0), pieces[-1].at(pieces[-1].length)
+
+    def sample_at_end(self) -> Sample:
+        """Give (y, y', y'', y''') at the end of the curve."""
+        first, second, third = (self.end_values(order)[1] for order in (1, 2, 3))
+        return self.end_values(0)[1], first, second, third
+
+
+def from_acceleration(pieces: Iterable[Piece], start: float = 0.0) -> Piecewise:
+    """
+    Integrate an acceleration diagram twice into a rise from 0 to 1 that starts at rest.
+
+    Parameters
+    ----------
+    pieces : Iterable[Piece]
+        The acceleration in any scale; its own integral must close to zero velocity if the rise
+        is to end at rest.
+    start : float
+        Abscissa of the beginning.
+
+    Returns
+    -------
+    Piecewise
+        The normalised rise: value 0 and slope 0 at the start, value 1 at the end.
+
+    """
+    position, velocity = 0.0, 0.0
+    rise: list[Piece] = []
+    for acceleration in pieces:
+        speed = acceleration.integral(velocity)
+        rise.append(speed.integral(position))
+        velocity, position = speed.at(speed.length), rise[-1].at(speed.length)
+    return Piecewise(start, [piece.scaled(1.0, 1.0 / position) for piece in rise])

@@ -1,0 +1,241 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The cam profile: segments joined over one turn of the shaft, repeated for ever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.motion.compiled import compile_periodic_sampler, Sampler
+from cam_motion.motion.piece import Array
+from cam_motion.motion.piecewise import JOINT_TOLERANCE, Jump, Peak, Piecewise
+from cam_motion.motion.segment import Segment
+from cam_motion.units import DEGREE, TURN
+
+CLOSURE_TOLERANCE = 1e-9
+"""How far the lifts of a returning cycle may miss zero, as a share of the largest lift."""
+
+FULL_CIRCLE_DEG = 360.0
+
+
+class SegmentPeaks(NamedTuple):
+    """
+    Signed peaks of one segment per radian of the shaft, and where they occur [rad].
+
+    The jerk is infinite where the acceleration steps, inside the segment or at its ends.
+    """
+
+    segment: Segment
+    start_deg: float
+    velocity: Peak
+    acceleration: Peak
+    jerk: Peak
+
+
+class CamProfile:
+    """
+    The position of an axis as a function of the shaft angle, y(phi), exact and periodic.
+
+    Over each turn of the shaft y grows by ``advance``: 0 for an axis that returns, the stroke
+    for one that accumulates (a belt).
+
+    Parameters
+    ----------
+    segments : Iterable[Segment]
+        The segments of one turn, in order; the last one ends at 360 degrees.
+    accumulate : bool
+        Whether the lifts of one turn may sum to something else than zero.
+
+    Raises
+    ------
+    ConfigurationError
+        When the angles do not rise to 360 degrees, a dwell has a lift, the cycle does not
+        close, or the velocity steps at a joint; all problems are listed, their paths relative
+        to the axis.
+
+    """
+
+    def __init__(self, segments: Iterable[Segment], accumulate: bool = False) -> None:
+        """Join the segments, each starting where the one before has led."""
+        self.segments = tuple(segments)
+        self.accumulate = accumulate
+        problems = [*_angle_problems(self.segments), *_lift_problems(self.segments, accumulate)]
+        if problems:
+            raise ConfigurationError(problems)
+        self.advance = math.fsum(s.lift for s in self.segments) if accumulate else 0.0
+        self._parts = tuple(self._join())
+        self.curve = Piecewise(
+            0.0,
+            [piece for part in self._parts for piece in part.pieces],
+            [0.0, *(x for part in self._parts for x in part.breaks[1:])],
+        )
+        if problems := self._velocity_problems():
+            raise ConfigurationError(problems)
+
+    def _join(self) -> Iterable[Piecewise]:
+        start, lifts = 0.0, [0.0]
+        for each in self.segments:
+            yield each.law.curve.scaled(each.end - start, each.lift, start, math.fsum(lifts))
+            start = each.end
+            lifts.append(each.lift)
+
+    @cached_property
+    def sample(self) -> Sampler:
+        """``sample(phi)`` gives (y, y', y'', y''') at one shaft angle, compiled for speed."""
+        return compile_periodic_sampler(self.curve.breaks, self.curve.pieces, self.advance)
+
+    def __call__(self, phi: ArrayLike, order: int = 0) -> Array:
+        """
+        Evaluate the profile or one of its derivatives.
+
+        Parameters
+        ----------
+        phi : array_like, any shape
+            Shaft angles, unwrapped [rad].
+        order : int
+            Order of the derivative with respect to the shaft angle.
+
+        Returns
+        -------
+        ndarray, shape of phi
+            Values, in the unit of the axis per rad^order.
+
+        """
+        angles = np.asarray(phi, dtype=float)
+        turns = np.floor(angles / TURN)
+        values = self.curve.evaluate(angles - turns * TURN, order)
+        if order == 0 and self.advance:
+            values = values + turns * self.advance
+        return values
+
+    def at_speed(self, phi: float, omega: float, alpha: float = 0.0,
+                 ) -> tuple[float, float, float]:
+        """
+        Give the setpoint at a shaft angle while the shaft turns.
+
+        Parameters
+        ----------
+        phi : float
+            Shaft angle, unwrapped [rad].
+        omega : float
+            Speed of the shaft [rad/s].
+        alpha : float
+            Acceleration of the shaft [rad/s²].
+
+        Returns
+        -------
+        tuple[float, float, float]
+            Position, velocity y' omega and acceleration y'' omega² + y' alpha, in the unit of
+            the axis, per s and per s².
+
+        """
+        y, slope, bend, _ = self.sample(phi)
+        return y, slope * omega, bend * omega * omega + slope * alpha
+
+    def jumps(self, order: int) -> list[Jump]:
+        """
+        List the steps of a derivative over one turn, the seam at 0 degrees included.
+
+        Parameters
+        ----------
+        order : int
+            Order of the derivative.
+
+        Returns
+        -------
+        list[Jump]
+            Steps larger than rounding, by rising shaft angle [rad].
+
+        """
+        first, last = self.curve.end_values(order)
+        if order == 0:
+            last -= self.advance
+        seam = Jump(0.0, order, first - last)
+        jumps = self.curve.jumps(order)
+        if abs(seam.amount) > JOINT_TOLERANCE * abs(self.curve.peak(order).value):
+            jumps.insert(0, seam)
+        return jumps
+
+    @cached_property
+    def segment_peaks(self) -> tuple[SegmentPeaks, ...]:
+        """Peaks of each segment, exact, with the angle of each."""
+        steps = [jump.at for jump in self.jumps(2)]
+        found = []
+        for each, part in zip(self.segments, self._parts):
+            jerk = part.peak(3)
+            if not each.is_dwell:
+                for at in steps:
+                    place = TURN if at == 0.0 and part.end == TURN else at
+                    if part.start <= place <= part.end or part.start == at:
+                        jerk = Peak(math.inf, place)
+                        break
+            found.append(SegmentPeaks(
+                each, part.start / DEGREE, part.peak(1), part.peak(2), jerk))
+        return tuple(found)
+
+    def _velocity_problems(self) -> list[Problem]:
+        ends = {part.start: s.name for part, s in zip(self._parts, self.segments)}
+        return [
+            Problem(
+                f'{ends.get(jump.at, self.segments[0].name)}.law',
+                next(s.law.name for s in self.segments if s.end > jump.at),
+                'the velocity of a cam must not step: it steps by '
+                f'{jump.amount:.6g} per rad at {jump.at / DEGREE:.6g} deg',
+                'take a law that starts and ends at rest, or one that meets its neighbour '
+                'at the same velocity',
+            )
+            for jump in self.jumps(1)
+        ]
+
+
+def _angle_problems(segments: tuple[Segment, ...]) -> list[Problem]:
+    if not segments:
+        return [Problem('segments', [], 'a cam needs at least one segment',
+                        'list the names of the segments in order')]
+    problems = []
+    before = 0.0
+    for each in segments:
+        path = f'{each.name}.end_deg'
+        if not math.isfinite(each.end_deg):
+            problems.append(Problem(path, each.end_deg, 'an angle must be a finite number'))
+            continue
+        if each.end_deg > FULL_CIRCLE_DEG:
+            problems.append(Problem(path, each.end_deg, 'a cycle ends at 360 deg'))
+        elif each.end_deg <= before:
+            problems.append(Problem(
+                path, each.end_deg, f'angles must rise: it starts at {before:g} deg',
+                'correct the angle or the order of segments'))
+        before = max(before, each.end_deg)
+    last = segments[-1]
+    if last.end_deg < FULL_CIRCLE_DEG:
+        problems.append(Problem(
+            f'{last.name}.end_deg', last.end_deg, 'the last segment must end at 360 deg',
+            'add a dwell that ends at 360.0'))
+    return problems
+
+
+def _lift_problems(segments: tuple[Segment, ...], accumulate: bool) -> list[Problem]:
+    problems = [
+        Problem(f'{s.name}.lift', s.lift, 'a lift must be a finite number')
+        for s in segments if not math.isfinite(s.lift)
+    ]
+    if problems:
+        return problems
+    problems += [
+        Problem(f'{s.name}.lift', s.lift, 'a dwell has no lift', 'give the segment a law')
+        for s in segments if s.is_dwell and s.lift
+    ]
+    total = math.fsum(s.lift for s in segments)
+    largest = max((abs(s.lift) for s in segments), default=0.0)
+    if not accumulate and abs(total) > CLOSURE_TOLERANCE * largest:
+        problems.append(Problem(
+            'cycle', 'return', 'the lifts of one cycle must sum to zero: they sum to '
+            f'{total:.9g}', 'correct a lift, or write cycle: accumulate for a belt'))
+    return problems

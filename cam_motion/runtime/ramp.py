@@ -1,0 +1,76 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""Jerk-limited speed ramps: the fastest way from one speed to another, in closed form."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+
+class RampLimits(NamedTuple):
+    """Largest magnitudes of the shaft's acceleration [rad/s²] and jerk [rad/s³]; positive."""
+
+    acceleration: float
+    jerk: float
+
+
+class RampStep(NamedTuple):
+    """A stretch of constant jerk [rad/s³] and its duration [s]."""
+
+    duration: float
+    jerk: float
+
+
+def speed_ramp(omega: float, alpha: float, target: float, limits: RampLimits) -> list[RampStep]:
+    """
+    Plan the fastest change of speed within the limits.
+
+    Parameters
+    ----------
+    omega : float
+        Speed at the start [rad/s].
+    alpha : float
+        Acceleration at the start [rad/s²]; may exceed the limit (after a quick stop), it is
+        then taken back first.
+    target : float
+        Speed at the end [rad/s], reached with zero acceleration.
+    limits : RampLimits
+        Limits on acceleration and jerk.
+
+    Returns
+    -------
+    list[RampStep]
+        At most four steps; empty when there is nothing to do.
+
+    Notes
+    -----
+    The time-optimal control of a double integrator with bounded input (jerk) and bounded state
+    (acceleration): jerk +-J until the peak acceleration, hold it if it is the limit, jerk -+J.
+    With d the direction, a = d alpha and D = d (target - omega), the peak is
+    a_p = sqrt(J D + a²/2), cut at the limit.
+
+    """
+    bound, jerk = limits
+    steps: list[RampStep] = []
+    excess = abs(alpha) - bound
+    if excess > 0.0:
+        duration = excess / jerk
+        steps.append(RampStep(duration, -math.copysign(jerk, alpha)))
+        reduced = math.copysign(bound, alpha)
+        omega += 0.5 * (alpha + reduced) * duration
+        alpha = reduced
+    released = omega + 0.5 * alpha * abs(alpha) / jerk
+    direction = math.copysign(1.0, target - released)
+    start = direction * alpha
+    change = direction * (target - omega)
+    peak = min(bound, math.sqrt(max(0.0, jerk * change + 0.5 * start * start)))
+    hold = 0.0
+    if peak == bound:
+        hold = (change - (2.0 * peak * peak - start * start) / (2.0 * jerk)) / peak
+    steps += [
+        RampStep((peak - start) / jerk, direction * jerk),
+        RampStep(hold, 0.0),
+        RampStep(peak / jerk, -direction * jerk),
+    ]
+    return [step for step in steps if step.duration > 0.0]

@@ -1,0 +1,280 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The virtual master shaft: angle, speed and acceleration at any instant, in closed form."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from enum import Enum
+import math
+from typing import NamedTuple
+
+from cam_motion.errors import CamMotionError
+from cam_motion.runtime.ramp import RampLimits, RampStep, speed_ramp
+from cam_motion.units import TURN
+
+# A cycle end this close [turns] counts as reached: the rounding of an angle after 1e6 cycles.
+_AT_CYCLE_END = 1e-9
+
+
+class ShaftError(CamMotionError):
+    """A command that the shaft cannot follow in its present state."""
+
+
+class ShaftState(NamedTuple):
+    """Angle [rad, unwrapped], speed [rad/s] and acceleration [rad/s²] of a shaft."""
+
+    phi: float
+    omega: float
+    alpha: float
+
+
+class ShaftMode(Enum):
+    """What the shaft has been told to do; the value is its name on the state topic."""
+
+    STOPPED = 'stopped'
+    RUNNING = 'running'
+    STOPPING = 'stopping'
+    STOPPING_AT_CYCLE_END = 'stopping_at_cycle_end'
+    QUICK_STOPPING = 'quick_stopping'
+    QUICK_STOPPED = 'quick_stopped'
+
+
+class _Phase(NamedTuple):
+    """Constant jerk from a given instant on."""
+
+    start: float
+    state: ShaftState
+    jerk: float
+
+    def at(self, t: float) -> ShaftState:
+        phi, omega, alpha = self.state
+        dt = t - self.start
+        return ShaftState(
+            phi + dt * (omega + dt * (0.5 * alpha + dt * self.jerk / 6.0)),
+            omega + dt * (alpha + 0.5 * dt * self.jerk),
+            alpha + dt * self.jerk,
+        )
+
+
+class Shaft:
+    """
+    A shaft that follows commands with jerk-limited ramps.
+
+    Its motion is a list of phases of constant jerk. The state at any instant comes from the
+    start of the phase it lies in, so nothing accumulates from tick to tick, and a command
+    replaces the phases from its own instant on, so nothing ever jumps.
+
+    Parameters
+    ----------
+    speed : float
+        Set speed [rad/s]; negative runs backwards.
+    limits : RampLimits
+        Limits of ordinary ramps.
+    quick_limits : RampLimits
+        Limits of the quick stop.
+    phi : float
+        Angle at which it stands at first [rad].
+
+    """
+
+    def __init__(self, speed: float, limits: RampLimits, quick_limits: RampLimits,
+                 phi: float = 0.0) -> None:
+        """Stand still."""
+        self.speed = speed
+        self.limits = limits
+        self.quick_limits = quick_limits
+        self._mode = ShaftMode.STOPPED
+        self._phases = [_Phase(0.0, ShaftState(phi, 0.0, 0.0), 0.0)]
+        self._starts = [0.0]
+
+    def state(self, t: float) -> ShaftState:
+        """
+        Give the state of the shaft at an instant.
+
+        Parameters
+        ----------
+        t : float
+            Time [s], not before the last command.
+
+        Returns
+        -------
+        ShaftState
+            Angle, speed and acceleration.
+
+        """
+        return self._phases[max(0, bisect_right(self._starts, t) - 1)].at(t)
+
+    def mode(self, t: float) -> ShaftMode:
+        """
+        Say what the shaft is doing.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        Returns
+        -------
+        ShaftMode
+            Its mode; a stop that has come to rest is STOPPED or QUICK_STOPPED.
+
+        """
+        if self._mode in (ShaftMode.STOPPED, ShaftMode.RUNNING) or t < self.settled_at:
+            return self._mode
+        quick = self._mode is ShaftMode.QUICK_STOPPING
+        return ShaftMode.QUICK_STOPPED if quick else ShaftMode.STOPPED
+
+    @property
+    def settled_at(self) -> float:
+        """Time [s] at which the present ramp or stop is over."""
+        return self._starts[-1]
+
+    def run(self, t: float) -> None:
+        """
+        Start, or resume from a stop under way, and go to the set speed.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        Raises
+        ------
+        ShaftError
+            After a quick stop that has not been reset.
+
+        """
+        if self.mode(t) in (ShaftMode.QUICK_STOPPING, ShaftMode.QUICK_STOPPED):
+            raise ShaftError('the shaft has been stopped quickly: reset it before it runs again')
+        self._ramp(t, self.speed, self.limits)
+        self._mode = ShaftMode.RUNNING
+
+    def set_speed(self, t: float, speed: float) -> None:
+        """
+        Change the set speed; a running shaft ramps to it at once.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        speed : float
+            New set speed [rad/s].
+
+        Raises
+        ------
+        ShaftError
+            When the speed is not a finite number.
+
+        """
+        if not math.isfinite(speed):
+            raise ShaftError(f'a speed must be a finite number, not {speed!r}')
+        self.speed = speed
+        if self.mode(t) is ShaftMode.RUNNING:
+            self._ramp(t, speed, self.limits)
+
+    def stop(self, t: float) -> None:
+        """
+        Come to rest by an ordinary ramp, wherever that is.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        """
+        if self.mode(t) in (ShaftMode.RUNNING, ShaftMode.STOPPING_AT_CYCLE_END):
+            self._ramp(t, 0.0, self.limits)
+            self._mode = ShaftMode.STOPPING
+
+    def quick_stop(self, t: float) -> None:
+        """
+        Come to rest as fast as the quick limits allow; to be reset before the next run.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        """
+        if self.mode(t) not in (ShaftMode.QUICK_STOPPING, ShaftMode.QUICK_STOPPED):
+            self._ramp(t, 0.0, self.quick_limits)
+            self._mode = ShaftMode.QUICK_STOPPING
+
+    def stop_at_cycle_end(self, t: float) -> None:
+        """
+        Go on at the set speed and come to rest exactly at the end of a cycle, the first possible.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        Raises
+        ------
+        ShaftError
+            When the shaft is not running, or its set speed is zero.
+
+        """
+        mode = self.mode(t)
+        if mode is ShaftMode.STOPPING_AT_CYCLE_END:
+            return
+        if mode is not ShaftMode.RUNNING or self.speed == 0.0:
+            raise ShaftError(f'the shaft is not running ({mode.value}): it cannot stop at the '
+                             'end of a cycle')
+        self._ramp(t, self.speed, self.limits)
+        cruise_from, cruising = self._phases[-1].start, self._phases[-1].state
+        brake = speed_ramp(self.speed, 0.0, 0.0, self.limits)
+        distance = _run(cruising, cruise_from, brake)[-1].state.phi - cruising.phi
+        sense = math.copysign(1.0, self.speed)
+        turns = sense * (cruising.phi + distance) / TURN
+        end = sense * math.ceil(turns - _AT_CYCLE_END) * TURN
+        wait = max(0.0, (end - cruising.phi - distance) / self.speed)
+        self._phases.pop()
+        steps = [RampStep(wait, 0.0)] if wait > 0.0 else []
+        self._phases += _run(cruising, cruise_from, [*steps, *brake])
+        last = self._phases.pop()
+        self._phases.append(_Phase(last.start, ShaftState(end, 0.0, 0.0), 0.0))
+        self._starts = [phase.start for phase in self._phases]
+        self._mode = ShaftMode.STOPPING_AT_CYCLE_END
+
+    def reset(self, t: float) -> None:
+        """
+        Acknowledge a quick stop.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        Raises
+        ------
+        ShaftError
+            While the shaft is still turning.
+
+        """
+        if self.mode(t) is ShaftMode.QUICK_STOPPING:
+            raise ShaftError('the shaft is still turning: reset it when it stands')
+        if self.mode(t) is ShaftMode.QUICK_STOPPED:
+            self._mode = ShaftMode.STOPPED
+
+    def _ramp(self, t: float, target: float, limits: RampLimits) -> None:
+        now = self.state(t)
+        steps = speed_ramp(now.omega, now.alpha, target, limits)
+        self._phases = _run(now, t, steps)
+        # the planned end exactly, free of what rounding left on the way there
+        last = self._phases.pop()
+        self._phases.append(
+            _Phase(last.start, ShaftState(last.state.phi, target, 0.0), 0.0))
+        self._starts = [phase.start for phase in self._phases]
+
+
+def _run(state: ShaftState, start: float, steps: Sequence[RampStep]) -> list[_Phase]:
+    """Lay steps one behind the other; the last phase goes on without jerk."""
+    phases = []
+    for duration, jerk in steps:
+        phases.append(_Phase(start, state, jerk))
+        start += duration
+        state = phases[-1].at(start)
+    return [*phases, _Phase(start, state, 0.0)]

@@ -1,0 +1,97 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The grid of scheduled ticks: which are due, which came late, which were missed."""
+
+from __future__ import annotations
+
+NANOSECONDS = 1_000_000_000
+"""Nanoseconds in a second."""
+
+
+class TickSchedule:
+    """
+    Ticks at a fixed rate on the machine's time base, which begins at zero.
+
+    The time of tick k is k / rate, rounded to the nanosecond, never a sum of periods. Ticks that
+    are late by less than the bound are still carried out, each with its own scheduled time;
+    later ones are given up, counted, and never silently stretched.
+
+    Parameters
+    ----------
+    rate : float
+        Ticks per second [Hz]; positive.
+    catch_up : float
+        How late a tick may be carried out [s].
+
+    Attributes
+    ----------
+    late, missed : int
+        Ticks carried out after their own period was over, and ticks given up.
+    restarts : int
+        How often the clock was found to have jumped backwards.
+
+    """
+
+    def __init__(self, rate: float, catch_up: float) -> None:
+        """Begin before the first tick."""
+        self.rate = rate
+        self.catch_up = catch_up
+        self.late = 0
+        self.missed = 0
+        self.restarts = 0
+        self.next_tick = 0
+        self._zero_ns: int | None = None
+
+    @property
+    def period_ns(self) -> float:
+        """Time from tick to tick [ns]."""
+        return NANOSECONDS / self.rate
+
+    def time_ns(self, tick: int) -> int:
+        """
+        Give the scheduled time of a tick.
+
+        Parameters
+        ----------
+        tick : int
+            Number of the tick, from 0.
+
+        Returns
+        -------
+        int
+            Time since the machine's time base began [ns].
+
+        """
+        return round(tick * NANOSECONDS / self.rate)
+
+    def due(self, now_ns: int) -> range:
+        """
+        Take the ticks that are due.
+
+        Parameters
+        ----------
+        now_ns : int
+            Clock reading [ns]; the first one defines when tick 0 is due.
+
+        Returns
+        -------
+        range
+            Numbers of the ticks to carry out now, oldest first; often one, empty when early.
+
+        """
+        period = self.period_ns
+        if self._zero_ns is None:
+            self._zero_ns = now_ns
+        # half a period of slack on both sides: wake-ups jitter about the grid
+        newest = int((now_ns - self._zero_ns) / period + 0.5)
+        if newest < self.next_tick - 2:
+            # the clock ran backwards (a looped bag): the time base goes on from where it was
+            self.restarts += 1
+            self._zero_ns = now_ns - self.time_ns(self.next_tick)
+            newest = self.next_tick
+        oldest = max(self.next_tick, newest - int(self.catch_up * self.rate))
+        self.missed += oldest - self.next_tick
+        self.late += max(0, newest - oldest)
+        if newest >= oldest:
+            self.next_tick = newest + 1
+        return range(oldest, newest + 1)

@@ -1,0 +1,43 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Conversion factors between the units of people and the SI units used inside.
+
+Degrees, revolutions and cycles per minute appear only at the edges, in names that end in
+``_deg``, ``_rpm`` and ``_cpm``. One cycle of the shaft is one turn of 2 pi.
+"""
+
+from __future__ import annotations
+
+import math
+
+TURN = 2.0 * math.pi
+"""One turn of a shaft, one cycle of the machine [rad]."""
+
+DEGREE = math.pi / 180.0
+"""One degree [rad]."""
+
+RPM = TURN / 60.0
+"""One revolution, or one cycle, per minute [rad/s]."""
+
+
+def rate_text(unit: str, order: int, base: str = 's') -> str:
+    """
+    Write the unit of a derivative.
+
+    Parameters
+    ----------
+    unit : str
+        Unit of the quantity itself (``m``).
+    order : int
+        Order of the derivative, 0 to 3.
+    base : str
+        Unit of the variable of differentiation (``s``, ``rad``).
+
+    Returns
+    -------
+    str
+        The unit, for example ``m/s²``.
+
+    """
+    return unit if order == 0 else f'{unit}/{base}{("", "", "²", "³")[order]}'
