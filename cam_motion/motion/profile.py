@@ -66,8 +66,7 @@ class CamProfile:
         """Join the segments, each starting where the one before has led."""
         self.segments = tuple(segments)
         self.accumulate = accumulate
-        problems = [*_angle_problems(self.segments), *_lift_problems(self.segments, accumulate)]
-        if problems:
+        if problems := program_problems(self.segments, accumulate):
             raise ConfigurationError(problems)
         self.advance = math.fsum(s.lift for s in self.segments) if accumulate else 0.0
         self._parts = tuple(self._join())
@@ -195,6 +194,26 @@ class CamProfile:
         ]
 
 
+def program_problems(segments: tuple[Segment, ...], accumulate: bool) -> list[Problem]:
+    """
+    Check angles and lifts of a program of segments, whatever their laws.
+
+    Parameters
+    ----------
+    segments : tuple[Segment, ...]
+        The segments in order; an angle or lift that is not known is NaN.
+    accumulate : bool
+        Whether the lifts may sum to something else than zero.
+
+    Returns
+    -------
+    list[Problem]
+        Everything that is wrong, paths relative to the axis.
+
+    """
+    return [*_angle_problems(segments), *_lift_problems(segments, accumulate)]
+
+
 def _angle_problems(segments: tuple[Segment, ...]) -> list[Problem]:
     if not segments:
         return [Problem('segments', [], 'a cam needs at least one segment',
@@ -226,12 +245,13 @@ def _lift_problems(segments: tuple[Segment, ...], accumulate: bool) -> list[Prob
         Problem(f'{s.name}.lift', s.lift, 'a lift must be a finite number')
         for s in segments if not math.isfinite(s.lift)
     ]
-    if problems:
-        return problems
+    unknown = bool(problems)
     problems += [
         Problem(f'{s.name}.lift', s.lift, 'a dwell has no lift', 'give the segment a law')
-        for s in segments if s.is_dwell and s.lift
+        for s in segments if s.is_dwell and s.lift and math.isfinite(s.lift)
     ]
+    if unknown:
+        return problems
     total = math.fsum(s.lift for s in segments)
     largest = max((abs(s.lift) for s in segments), default=0.0)
     if not accumulate and abs(total) > CLOSURE_TOLERANCE * largest:

@@ -1,0 +1,165 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reading a machine's configuration: a ROS 2 parameter file, read as the nodes read it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+import re
+from typing import Any
+
+import yaml
+
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io.machine import build_machine, Machine, Values
+
+_HINT = 'a machine file has a key per node, and ros__parameters: below each'
+_EVERY_NODE = '/**'
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML as the ROS parser reads it: 1e-3 is a number, and no key may stand twice."""
+
+
+_Loader.add_implicit_resolver(
+    'tag:yaml.org,2002:float',
+    re.compile(r'^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$'
+               r'|^\.(nan|NaN|NAN)$'),
+    list('-+0123456789.'),
+)
+# whole numbers before floats, as the pattern above takes both
+_Loader.yaml_implicit_resolvers = {
+    first: sorted(resolvers, key=lambda pair: pair[0].endswith(':float'))
+    for first, resolvers in _Loader.yaml_implicit_resolvers.items()
+}
+
+
+def _mapping_without_duplicates(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
+    keys = [loader.construct_object(key, deep=True) for key, _ in node.value]
+    for key, (key_node, _) in zip(keys, node.value):
+        if keys.count(key) > 1:
+            raise ConfigurationError([Problem(
+                str(key), key, f'stands twice (line {key_node.start_mark.line + 1})',
+                'keep one of them')])
+    return loader.construct_mapping(node, deep=True)
+
+
+_Loader.add_constructor(
+    yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping_without_duplicates)
+
+
+def read_sections(path: str | Path) -> dict[str, Values]:
+    """
+    Read a ROS 2 parameter file.
+
+    Parameters
+    ----------
+    path : str | Path
+        The file.
+
+    Returns
+    -------
+    dict[str, Mapping[str, Any]]
+        Parameters of every node, by node name (namespaces dropped) and flat parameter name.
+
+    Raises
+    ------
+    ConfigurationError
+        When the file cannot be read or is no parameter file.
+
+    """
+    try:
+        text = Path(path).read_text(encoding='utf-8')
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, 'strerror', None) or str(error)
+        raise ConfigurationError([Problem(
+            str(path), None, f'cannot be read: {reason}', 'give the path of a machine file'
+        )]) from error
+    return parse_sections(text, str(path))
+
+
+def parse_sections(text: str, source: str = 'configuration') -> dict[str, Values]:
+    """
+    Parse the text of a ROS 2 parameter file.
+
+    Parameters
+    ----------
+    text : str
+        YAML.
+    source : str
+        What to call it in errors.
+
+    Returns
+    -------
+    dict[str, Mapping[str, Any]]
+        Parameters of every node, by node name (namespaces dropped) and flat parameter name.
+
+    Raises
+    ------
+    ConfigurationError
+        When it is no YAML or no parameter file.
+
+    """
+    try:
+        tree = yaml.load(text, Loader=_Loader)  # noqa: S506 (a SafeLoader by inheritance)
+    except yaml.YAMLError as error:
+        mark = getattr(error, 'problem_mark', None)
+        place = f'{source}:{mark.line + 1}:{mark.column + 1}' if mark else source
+        reason = getattr(error, 'problem', None) or str(error)
+        raise ConfigurationError([Problem(place, '', f'is no YAML: {reason}')]) from error
+    if not isinstance(tree, Mapping) or not tree:
+        raise ConfigurationError([Problem(source, tree, 'is no machine file', _HINT)])
+    problems: list[Problem] = []
+    sections: dict[str, dict[str, Any]] = {}
+    shared: dict[str, Any] = {}
+    for key, body in tree.items():
+        below = body.get('ros__parameters') if isinstance(body, Mapping) else None
+        if not isinstance(key, str) or not isinstance(below, Mapping):
+            problems.append(Problem(str(key), body, 'is no section of a node', _HINT))
+            continue
+        extra = [name for name in body if name != 'ros__parameters']
+        problems += [Problem(f'{key}.{name}', body[name], 'stands beside ros__parameters',
+                             'move it below ros__parameters') for name in extra]
+        flat = _flatten(below)
+        if key == _EVERY_NODE:
+            shared = flat
+        else:
+            sections.setdefault(key.rsplit('/', 1)[-1], {}).update(flat)
+    if problems:
+        raise ConfigurationError(problems)
+    return {name: {**shared, **own} for name, own in sections.items()}
+
+
+def _flatten(tree: Mapping[Any, Any], prefix: str = '') -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in tree.items():
+        name = f'{prefix}{key}'
+        if isinstance(value, Mapping):
+            flat.update(_flatten(value, name + '.'))
+        else:
+            flat[name] = value
+    return flat
+
+
+def load_machine(path: str | Path) -> Machine:
+    """
+    Read, check and build a machine.
+
+    Parameters
+    ----------
+    path : str | Path
+        A ROS 2 parameter file.
+
+    Returns
+    -------
+    Machine
+        The machine.
+
+    Raises
+    ------
+    ConfigurationError
+        With every problem found.
+
+    """
+    return build_machine(read_sections(path))
