@@ -150,6 +150,9 @@ MASTER_SHAFT = (
     ParameterSpec('rate_hz', 'double', 500.0, 'Shaft points published per second.', 'Hz',
                   least=1.0, most=5000.0),
     ParameterSpec('run_at_start', 'bool', True, 'Whether the shaft starts to turn when active.'),
+    ParameterSpec('start_delay', 'double', 0.5,
+                  'How long the shaft stands before it starts on its own, so that all nodes '
+                  'have found each other.', 's', least=0.0, most=60.0),
     ParameterSpec('acceleration', 'double', 30.0, 'Largest acceleration of speed ramps.',
                   'rad/s²', above=0.0),
     ParameterSpec('jerk', 'double', 300.0, 'Largest jerk of speed ramps.', 'rad/s³', above=0.0),
@@ -178,6 +181,10 @@ CAM_AXIS = (
                   'unit/s²', above=0.0),
     ParameterSpec('limits.jerk', 'double', None, 'Largest jerk of the axis.', 'unit/s³',
                   above=0.0),
+    ParameterSpec('stop_acceleration', 'double', 150.0,
+                  'Deceleration of the shaft by which the axis stops on its own curve when it '
+                  'must stop while the shaft goes on.', 'rad/s²', above=0.0),
+    ParameterSpec('stop_jerk', 'double', 3000.0, 'Jerk of that stop.', 'rad/s³', above=0.0),
     _AUTOSTART,
 )
 
@@ -227,6 +234,7 @@ LINE = (
     ParameterSpec('master', 'string', 'master_shaft', 'Name of the master shaft.'),
     ParameterSpec('axes', 'string_list', [], 'Names of the axes.'),
     ParameterSpec('drives', 'string_list', [], 'Names of the drives.'),
+    _AUTOSTART,
 )
 
 TABLES: dict[str, tuple[ParameterSpec, ...]] = {

@@ -4,14 +4,12 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Sequence
 from enum import Enum
 import math
-from typing import NamedTuple
 
 from cam_motion.errors import CamMotionError
 from cam_motion.runtime.ramp import RampLimits, RampStep, speed_ramp
+from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 from cam_motion.units import TURN
 
 # A cycle end this close [turns] counts as reached: the rounding of an angle after 1e6 cycles.
@@ -20,14 +18,6 @@ _AT_CYCLE_END = 1e-9
 
 class ShaftError(CamMotionError):
     """A command that the shaft cannot follow in its present state."""
-
-
-class ShaftState(NamedTuple):
-    """Angle [rad, unwrapped], speed [rad/s] and acceleration [rad/s²] of a shaft."""
-
-    phi: float
-    omega: float
-    alpha: float
 
 
 class ShaftMode(Enum):
@@ -41,30 +31,12 @@ class ShaftMode(Enum):
     QUICK_STOPPED = 'quick_stopped'
 
 
-class _Phase(NamedTuple):
-    """Constant jerk from a given instant on."""
-
-    start: float
-    state: ShaftState
-    jerk: float
-
-    def at(self, t: float) -> ShaftState:
-        phi, omega, alpha = self.state
-        dt = t - self.start
-        return ShaftState(
-            phi + dt * (omega + dt * (0.5 * alpha + dt * self.jerk / 6.0)),
-            omega + dt * (alpha + 0.5 * dt * self.jerk),
-            alpha + dt * self.jerk,
-        )
-
-
 class Shaft:
     """
     A shaft that follows commands with jerk-limited ramps.
 
-    Its motion is a list of phases of constant jerk. The state at any instant comes from the
-    start of the phase it lies in, so nothing accumulates from tick to tick, and a command
-    replaces the phases from its own instant on, so nothing ever jumps.
+    Its motion is known in closed form for all time to come. A command replaces that motion from
+    its own instant on, starting from the state at that instant, so nothing ever jumps.
 
     Parameters
     ----------
@@ -86,8 +58,7 @@ class Shaft:
         self.limits = limits
         self.quick_limits = quick_limits
         self._mode = ShaftMode.STOPPED
-        self._phases = [_Phase(0.0, ShaftState(phi, 0.0, 0.0), 0.0)]
-        self._starts = [0.0]
+        self._motion = ShaftMotion(0.0, ShaftState(phi, 0.0, 0.0))
 
     def state(self, t: float) -> ShaftState:
         """
@@ -104,7 +75,7 @@ class Shaft:
             Angle, speed and acceleration.
 
         """
-        return self._phases[max(0, bisect_right(self._starts, t) - 1)].at(t)
+        return self._motion.state(t)
 
     def mode(self, t: float) -> ShaftMode:
         """
@@ -129,7 +100,7 @@ class Shaft:
     @property
     def settled_at(self) -> float:
         """Time [s] at which the present ramp or stop is over."""
-        return self._starts[-1]
+        return self._motion.settled_at
 
     def run(self, t: float) -> None:
         """
@@ -223,20 +194,15 @@ class Shaft:
         if mode is not ShaftMode.RUNNING or self.speed == 0.0:
             raise ShaftError(f'the shaft is not running ({mode.value}): it cannot stop at the '
                              'end of a cycle')
-        self._ramp(t, self.speed, self.limits)
-        cruise_from, cruising = self._phases[-1].start, self._phases[-1].state
+        cruise = self._motion.ramped(t, self.speed, self.limits)
+        start, cruising = cruise.settled_at, cruise.final
         brake = speed_ramp(self.speed, 0.0, 0.0, self.limits)
-        distance = _run(cruising, cruise_from, brake)[-1].state.phi - cruising.phi
+        distance = ShaftMotion(start, cruising, brake).final.phi - cruising.phi
         sense = math.copysign(1.0, self.speed)
         turns = sense * (cruising.phi + distance) / TURN
         end = sense * math.ceil(turns - _AT_CYCLE_END) * TURN
         wait = max(0.0, (end - cruising.phi - distance) / self.speed)
-        self._phases.pop()
-        steps = [RampStep(wait, 0.0)] if wait > 0.0 else []
-        self._phases += _run(cruising, cruise_from, [*steps, *brake])
-        last = self._phases.pop()
-        self._phases.append(_Phase(last.start, ShaftState(end, 0.0, 0.0), 0.0))
-        self._starts = [phase.start for phase in self._phases]
+        self._motion = cruise.continued([RampStep(wait, 0.0), *brake], ShaftState(end, 0.0, 0.0))
         self._mode = ShaftMode.STOPPING_AT_CYCLE_END
 
     def reset(self, t: float) -> None:
@@ -259,22 +225,22 @@ class Shaft:
         if self.mode(t) is ShaftMode.QUICK_STOPPED:
             self._mode = ShaftMode.STOPPED
 
+    def at_rest(self, phi: float) -> Shaft:
+        """
+        Make a shaft with the same settings that stands still.
+
+        Parameters
+        ----------
+        phi : float
+            Angle at which it stands [rad].
+
+        Returns
+        -------
+        Shaft
+            The shaft.
+
+        """
+        return Shaft(self.speed, self.limits, self.quick_limits, phi)
+
     def _ramp(self, t: float, target: float, limits: RampLimits) -> None:
-        now = self.state(t)
-        steps = speed_ramp(now.omega, now.alpha, target, limits)
-        self._phases = _run(now, t, steps)
-        # the planned end exactly, free of what rounding left on the way there
-        last = self._phases.pop()
-        self._phases.append(
-            _Phase(last.start, ShaftState(last.state.phi, target, 0.0), 0.0))
-        self._starts = [phase.start for phase in self._phases]
-
-
-def _run(state: ShaftState, start: float, steps: Sequence[RampStep]) -> list[_Phase]:
-    """Lay steps one behind the other; the last phase goes on without jerk."""
-    phases = []
-    for duration, jerk in steps:
-        phases.append(_Phase(start, state, jerk))
-        start += duration
-        state = phases[-1].at(start)
-    return [*phases, _Phase(start, state, 0.0)]
+        self._motion = self._motion.ramped(t, target, limits)

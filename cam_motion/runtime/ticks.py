@@ -7,6 +7,10 @@ from __future__ import annotations
 NANOSECONDS = 1_000_000_000
 """Nanoseconds in a second."""
 
+# How early a wake-up may come and still stand for its tick, in periods: clocks are read at
+# slightly different instants. A late wake-up never carries out a tick before its time.
+_EARLY = 0.1
+
 
 class TickSchedule:
     """
@@ -27,6 +31,8 @@ class TickSchedule:
     ----------
     late, missed : int
         Ticks carried out after their own period was over, and ticks given up.
+    worst_ns : int
+        Largest lateness of a tick that was carried out [ns].
     restarts : int
         How often the clock was found to have jumped backwards.
 
@@ -38,6 +44,7 @@ class TickSchedule:
         self.catch_up = catch_up
         self.late = 0
         self.missed = 0
+        self.worst_ns = 0
         self.restarts = 0
         self.next_tick = 0
         self._zero_ns: int | None = None
@@ -64,6 +71,10 @@ class TickSchedule:
         """
         return round(tick * NANOSECONDS / self.rate)
 
+    def resume(self) -> None:
+        """Go on after a pause: the next clock reading is when the next tick is due."""
+        self._zero_ns = None
+
     def due(self, now_ns: int) -> range:
         """
         Take the ticks that are due.
@@ -71,7 +82,7 @@ class TickSchedule:
         Parameters
         ----------
         now_ns : int
-            Clock reading [ns]; the first one defines when tick 0 is due.
+            Clock reading [ns]; the first one defines when the next tick is due.
 
         Returns
         -------
@@ -81,9 +92,8 @@ class TickSchedule:
         """
         period = self.period_ns
         if self._zero_ns is None:
-            self._zero_ns = now_ns
-        # half a period of slack on both sides: wake-ups jitter about the grid
-        newest = int((now_ns - self._zero_ns) / period + 0.5)
+            self._zero_ns = now_ns - self.time_ns(self.next_tick)
+        newest = int((now_ns - self._zero_ns) / period + _EARLY)
         if newest < self.next_tick - 2:
             # the clock ran backwards (a looped bag): the time base goes on from where it was
             self.restarts += 1
@@ -94,4 +104,5 @@ class TickSchedule:
         self.late += max(0, newest - oldest)
         if newest >= oldest:
             self.next_tick = newest + 1
+            self.worst_ns = max(self.worst_ns, now_ns - self._zero_ns - self.time_ns(oldest))
         return range(oldest, newest + 1)

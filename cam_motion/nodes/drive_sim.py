@@ -1,0 +1,172 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""A drive that follows an axis: what torque and speed its motor and load shaft see."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import sys
+from typing import Any
+
+from rclpy.publisher import Publisher
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+from cam_motion.io.machine import build_drive
+from cam_motion.io.parameters import DRIVE_SIM
+from cam_motion.nodes import diagnostics
+from cam_motion.nodes.managed_node import ManagedNode
+from cam_motion.nodes.qos import overridable, SETPOINTS
+from cam_motion.nodes.runner import run
+from cam_motion.nodes.wire import JointStateCodec, Point, unpack_point
+from cam_motion.runtime.ticks import NANOSECONDS
+from cam_motion.units import RPM
+
+JOINTS = ('motor', 'load')
+
+
+class DriveSim(ManagedNode):
+    """
+    Publishes position, speed and torque of motor and load for every setpoint of an axis.
+
+    Parameters
+    ----------
+    name : str
+        Name of the node.
+    own_process : bool
+        Whether setpoints come over the topic; else the owner of the process hands them over by
+        calling `answer`.
+    **options : Any
+        Further arguments of `rclpy.node.Node`.
+
+    """
+
+    TABLE = DRIVE_SIM
+
+    def __init__(self, name: str = 'drive_sim', own_process: bool = True, **options: Any) -> None:
+        """Declare the parameters."""
+        super().__init__(name, **options)
+        self._own_process = own_process
+        self._states: Publisher | None = None
+        self._subscription = None
+
+    def configure(self, values: dict[str, Any]) -> None:
+        """
+        Build the drive and create the topics.
+
+        Parameters
+        ----------
+        values : dict[str, Any]
+            All parameters by flat name.
+
+        """
+        settings = build_drive(self.get_name(), values)
+        self._axis = settings.axis
+        self._drive = settings.drive
+        self._codec = JointStateCodec(JOINTS, with_effort=True)
+        self._epoch_ns: int | None = None  # node time at which the machine's time base began
+        self._answered = 0
+        self._refused = 0
+        self._peak_torque = 0.0
+        self._states = self.create_lifecycle_publisher(
+            JointState, '~/drive_state', SETPOINTS, qos_overriding_options=overridable())
+        if self._own_process:
+            self._subscription = self.create_subscription(
+                JointTrajectoryPoint, f'{self._axis}/setpoint', self._on_setpoint, SETPOINTS,
+                raw=True, qos_overriding_options=overridable())
+
+    def cleanup(self) -> None:
+        """Drop the topics."""
+        if self._states is not None:
+            self.destroy_lifecycle_publisher(self._states)
+            self._states = None
+        if self._subscription is not None:
+            self.destroy_subscription(self._subscription)
+            self._subscription = None
+
+    def activate(self) -> None:
+        """Wait for setpoints."""
+        self._epoch_ns = None
+        self.set_state('waiting')
+
+    def answer(self, setpoint: Point) -> None:
+        """
+        Answer a setpoint of the axis with the state of the drive.
+
+        Parameters
+        ----------
+        setpoint : Point
+            Position, velocity and acceleration of the axis.
+
+        """
+        if not self.active:
+            return
+        time_ns = setpoint.sec * NANOSECONDS + setpoint.nanosec
+        if self._epoch_ns is None:
+            self._epoch_ns = self.get_clock().now().nanoseconds - time_ns
+            self.set_state('following')
+        state = self._drive.follow(setpoint.position, setpoint.velocity, setpoint.acceleration)
+        self._last = state
+        self._peak_torque = max(self._peak_torque, abs(state.motor_torque))
+        self._answered += 1
+        self._states.publish(self._codec.pack(
+            self._epoch_ns + time_ns,
+            (state.motor_position, state.load_position),
+            (state.motor_velocity, state.load_velocity),
+            (state.motor_torque, state.load_torque)))
+
+    def _on_setpoint(self, data: bytes) -> None:
+        setpoint = unpack_point(data)
+        if setpoint is not None:
+            self.answer(setpoint)
+            return
+        self._refused += 1
+        self.get_logger().warning(
+            'setpoint: a point without exactly one finite position, velocity and acceleration '
+            'was left out', throttle_duration_sec=1.0)
+
+    @property
+    def hardware_id(self) -> str:
+        """The axis that the drive moves."""
+        return self._axis if self._states is not None else self.get_name()
+
+    def health(self) -> tuple[bytes, Mapping[str, Any]]:
+        """
+        Say how the drive is.
+
+        Returns
+        -------
+        tuple[bytes, Mapping[str, Any]]
+            Level and figures of the diagnostics.
+
+        """
+        if self._states is None or not self._answered:
+            return diagnostics.OK, {}
+        return diagnostics.WARN if self._refused else diagnostics.OK, {
+            'states': self._answered, 'refused_points': self._refused,
+            'motor_torque': self._last.motor_torque,
+            'motor_speed_rpm': self._last.motor_velocity / RPM,
+            'peak_motor_torque': self._peak_torque,
+        }
+
+
+def main(argv: list[str] | None = None) -> int:
+    """
+    Run the node as a process.
+
+    Parameters
+    ----------
+    argv : list[str], optional
+        Command line; None takes that of the process.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    """
+    return run(lambda: [DriveSim()], argv)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

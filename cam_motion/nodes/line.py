@@ -1,0 +1,147 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The whole machine in one process: shaft, axes and drives on one executor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import sys
+from typing import Any
+
+from cam_motion.errors import ConfigurationError
+from cam_motion.io.machine import build_machine
+from cam_motion.io.parameters import check_values, LINE
+from cam_motion.nodes.cam_axis import CamAxis
+from cam_motion.nodes.drive_sim import DriveSim
+from cam_motion.nodes.managed_node import ManagedNode
+from cam_motion.nodes.master_shaft import MasterShaft
+from cam_motion.nodes.parameters import values_of
+from cam_motion.nodes.runner import run
+
+
+class Line(ManagedNode):
+    """
+    Names the parts of the machine, and checks that they fit together.
+
+    Parameters
+    ----------
+    name : str
+        Name of the node.
+    **options : Any
+        Further arguments of `rclpy.node.Node`.
+
+    """
+
+    TABLE = LINE
+
+    def __init__(self, name: str = 'line', **options: Any) -> None:
+        """Declare the parameters."""
+        super().__init__(name, **options)
+        self.parts: list[ManagedNode] = []
+
+    def configure(self, values: dict[str, Any]) -> None:
+        """
+        Check the machine as a whole.
+
+        Parameters
+        ----------
+        values : dict[str, Any]
+            All parameters by flat name.
+
+        Raises
+        ------
+        ConfigurationError
+            When the axes do not keep their limits at the set speed, or names do not fit.
+
+        """
+        sections = {part.get_name(): values_of(part) for part in self.parts}
+        # said by the parts themselves: only what concerns the machine as a whole is left
+        known = {
+            f'{part.get_name()}.{problem.path}' for part in self.parts for problem in part.problems
+        }
+        try:
+            build_machine({**sections, 'line': values})
+        except ConfigurationError as error:
+            whole = [
+                problem for problem in error.problems if problem.path not in known]
+            if whole:
+                raise ConfigurationError(whole) from None
+
+    def activate(self) -> None:
+        """Say that the line is up."""
+        self.set_state('active')
+
+    def health(self) -> tuple[bytes, Mapping[str, Any]]:
+        """
+        Say how the line is, as the worst of its parts.
+
+        Returns
+        -------
+        tuple[bytes, Mapping[str, Any]]
+            Level, and the state of every part.
+
+        """
+        level = max(part.health()[0] for part in self.parts) if self.parts else b'\0'
+        return level, {part.get_name(): part.state_text for part in self.parts}
+
+
+def make_line(**options: Any) -> list[ManagedNode]:
+    """
+    Make all nodes of the machine that the parameters describe.
+
+    Shaft points reach the axes, and setpoints the drives, by a call within the process; all of
+    them are published as well.
+
+    Parameters
+    ----------
+    **options : Any
+        Arguments of `rclpy.node.Node` for every node, such as ``context``.
+
+    Returns
+    -------
+    list[ManagedNode]
+        Master shaft, axes, drives, and the line itself.
+
+    Raises
+    ------
+    ConfigurationError
+        When the names of the parts cannot be used.
+
+    """
+    line = Line(**options)
+    names, problems = check_values(LINE, values_of(line))
+    if problems:
+        line.destroy_node()
+        raise ConfigurationError(problem.below('line') for problem in problems)
+    master = MasterShaft(names['master'], **options)
+    axes = {name: CamAxis(name, own_process=False, **options) for name in names['axes']}
+    drives = [DriveSim(name, own_process=False, **options) for name in names['drives']]
+    master.listeners += [axis.answer for axis in axes.values()]
+    for drive in drives:
+        followed = axes.get(values_of(drive).get('axis', ''))
+        if followed is not None:
+            followed.listeners.append(drive.answer)
+    line.parts = [master, *axes.values(), *drives]
+    return [*line.parts, line]
+
+
+def main(argv: list[str] | None = None) -> int:
+    """
+    Run the machine as a process.
+
+    Parameters
+    ----------
+    argv : list[str], optional
+        Command line; None takes that of the process.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    """
+    return run(make_line, argv)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

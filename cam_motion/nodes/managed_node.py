@@ -1,0 +1,283 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The life of a node: parameters, guarded transitions, state, diagnostics, a clean end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+import time
+import traceback
+from typing import Any, ClassVar
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, ClockType
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.parameter import Parameter
+from std_msgs.msg import String
+
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io.parameters import is_of_every_node, ParameterSpec
+from cam_motion.nodes import diagnostics
+from cam_motion.nodes.parameters import declare, values_of
+from cam_motion.nodes.qos import LATCHED, overridable
+
+STATE = '~/state'
+
+
+class ManagedNode(LifecycleNode):
+    """
+    A lifecycle node whose transitions say why they fail.
+
+    rclpy swallows what a transition callback raises. Subclasses therefore implement
+    `configure`, `activate`, `deactivate` and `cleanup`; what these raise is logged in words, and
+    a configuration that cannot be used leaves the node unconfigured.
+
+    Parameters
+    ----------
+    name : str
+        Name of the node, unless remapped.
+    **options : Any
+        Further arguments of `rclpy.node.Node`, such as ``context`` or ``parameter_overrides``.
+
+    """
+
+    TABLE: ClassVar[tuple[ParameterSpec, ...]] = ()
+    LIVE: ClassVar[frozenset[str]] = frozenset()
+    """Parameters that may change while the node is configured."""
+
+    def __init__(self, name: str, **options: Any) -> None:
+        """Declare the parameters; everything else waits for the configuration."""
+        super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
+        self.problems: tuple[Problem, ...] = ()
+        self.failed = False
+        self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self.active = False
+        self._configured = False
+        self._state_text = ''
+        declare(self, self.TABLE)
+        self._state = self.create_publisher(
+            String, STATE, LATCHED, qos_overriding_options=overridable())
+        self._diagnostics = self.create_publisher(DiagnosticArray, diagnostics.TOPIC, 10)
+        self._diagnostics_timer = self.create_timer(
+            diagnostics.PERIOD, self._report, clock=self.steady_clock)
+        self.add_on_set_parameters_callback(self._on_set_parameters)
+        self.set_state('unconfigured')
+
+    # What subclasses implement
+
+    def configure(self, values: dict[str, Any]) -> None:
+        """
+        Build the core from the parameters and create what the node talks through.
+
+        Parameters
+        ----------
+        values : dict[str, Any]
+            All parameters by flat name, as given.
+
+        Raises
+        ------
+        ConfigurationError
+            When they cannot be used.
+
+        """
+
+    def activate(self) -> None:
+        """Begin to work."""
+
+    def deactivate(self) -> None:
+        """Cease to work, leaving a hold setpoint behind."""
+
+    def cleanup(self) -> None:
+        """Drop what `configure` made; must bear being called after half of it."""
+
+    def begin_stop(self) -> None:
+        """Begin to come to rest, because the process has been asked to end."""
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the node has come to rest."""
+        return True
+
+    def health(self) -> tuple[bytes, Mapping[str, Any]]:
+        """
+        Say how the node is.
+
+        Returns
+        -------
+        tuple[bytes, Mapping[str, Any]]
+            Level and figures of the diagnostics.
+
+        """
+        return diagnostics.OK, {}
+
+    @property
+    def hardware_id(self) -> str:
+        """What the node stands for in the diagnostics."""
+        return self.get_name()
+
+    # What all nodes share
+
+    @property
+    def sim_time(self) -> bool:
+        """Whether the node lives on /clock."""
+        return bool(self.get_parameter('use_sim_time').value)
+
+    @property
+    def tick_clock(self) -> Clock:
+        """The clock that schedules ticks: /clock if told so, else one that nobody can set."""
+        return self.get_clock() if self.sim_time else self.steady_clock
+
+    def set_state(self, text: str) -> None:
+        """
+        Publish the state, if it has changed.
+
+        Parameters
+        ----------
+        text : str
+            The state.
+
+        """
+        if text != self._state_text:
+            self._state_text = text
+            self._state.publish(String(data=text))
+
+    @property
+    def state_text(self) -> str:
+        """The state as published."""
+        return self._state_text
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Configure; see `configure`."""
+        def work() -> None:
+            self.problems = ()
+            self.configure(values_of(self))
+            self._configured = True
+            self.set_state('inactive')
+        result = self._guarded('configure', work)
+        if result is not TransitionCallbackReturn.SUCCESS:
+            self.cleanup()
+            return result
+        return super().on_configure(state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Activate; see `activate`."""
+        super().on_activate(state)
+        self.active = True
+        result = self._guarded('activate', self.activate)
+        self.active = result is TransitionCallbackReturn.SUCCESS
+        return result
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Deactivate; see `deactivate`."""
+        result = self._guarded('deactivate', self.deactivate)
+        self.active = False
+        self.set_state('inactive')
+        super().on_deactivate(state)
+        return result
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Clean up; see `cleanup`."""
+        return self._end('cleanup', 'unconfigured')
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Shut down from any state."""
+        if self.active:
+            self._guarded('deactivate', self.deactivate)
+            self.active = False
+        return self._end('shutdown', 'finalized')
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Fall back to unconfigured after an error, which has been logged."""
+        self.active = False
+        return self._end('error', 'unconfigured')
+
+    def _end(self, transition: str, state: str) -> TransitionCallbackReturn:
+        result = self._guarded(transition, self.cleanup)
+        self._configured = False
+        self.set_state(state)
+        return result
+
+    def _guarded(self, transition: str, work: Callable[[], None]) -> TransitionCallbackReturn:
+        try:
+            work()
+        except ConfigurationError as error:
+            self.problems = error.problems
+            for problem in error.problems:
+                self.get_logger().error(str(problem.below(self.get_name())))
+            return TransitionCallbackReturn.FAILURE
+        except Exception:
+            self.failed = True
+            self.get_logger().error(f'{transition} failed:\n{traceback.format_exc()}')
+            return TransitionCallbackReturn.ERROR
+        return TransitionCallbackReturn.SUCCESS
+
+    def _on_set_parameters(self, changes: list[Parameter]) -> SetParametersResult:
+        """Accept or refuse a change; must never raise, that would end the executor."""
+        specs = {spec.name: spec for spec in self.TABLE}
+        for change in changes:
+            name, value = change.name, change.value
+            if is_of_every_node(name):
+                continue
+            if self._configured and name not in self.LIVE:
+                return SetParametersResult(successful=False, reason=(
+                    f'{name} can change while the node is unconfigured only: clean it up first'))
+            problem = specs[name].check(value) if name in specs and value is not None else None
+            reason = str(problem) if problem else self.refuse_change(name, value)
+            if reason:
+                return SetParametersResult(successful=False, reason=reason)
+        for change in changes:
+            if self._configured and change.name in self.LIVE:
+                self.take_change(change.name, change.value)
+        return SetParametersResult(successful=True)
+
+    def refuse_change(self, name: str, value: Any) -> str:
+        """
+        Say why a live parameter cannot take a value.
+
+        Parameters
+        ----------
+        name : str
+            Name of the parameter.
+        value : Any
+            The value; its type and range have been checked.
+
+        Returns
+        -------
+        str
+            The reason, empty to accept.
+
+        """
+        return ''
+
+    def take_change(self, name: str, value: Any) -> None:
+        """
+        Take over a live parameter.
+
+        Parameters
+        ----------
+        name : str
+            Name of the parameter.
+        value : Any
+            Its new value, checked.
+
+        """
+
+    def _report(self) -> None:
+        level, values = self.health()
+        self._diagnostics.publish(diagnostics.report(
+            self.get_clock().now().to_msg(), self.get_name(), self.hardware_id, level,
+            self._state_text, values))
+
+    @staticmethod
+    def steady_now() -> float:
+        """
+        Read the steady clock.
+
+        Returns
+        -------
+        float
+            Seconds since some fixed instant.
+
+        """
+        return time.monotonic()

@@ -1,0 +1,183 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""Running nodes as a process: start, spin, stop on a signal, exit codes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+import gc
+import signal
+import sys
+import threading
+import time
+
+import rclpy
+from rclpy.executors import Executor
+from rclpy.lifecycle import TransitionCallbackReturn
+from rclpy.signals import SignalHandlerOptions
+
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.nodes.executor import make_executor
+from cam_motion.nodes.managed_node import ManagedNode
+
+EXIT_OK = 0
+EXIT_BUG = 1
+EXIT_CONFIGURATION = 2
+
+_STOP_WITHIN = 4.0  # launch sends SIGTERM 5 s after SIGINT
+_SPIN = 0.1
+
+Factory = Callable[[], Sequence[ManagedNode]]
+"""Makes the nodes of a process; raises `ConfigurationError` when it cannot."""
+
+
+def run(factory: Factory, argv: Sequence[str] | None = None) -> int:
+    """
+    Run nodes until the process is asked to stop.
+
+    SIGINT and SIGTERM alike bring the machine to rest within a bounded time, publish the last
+    hold setpoints and end the process. Further signals meanwhile change nothing.
+
+    Parameters
+    ----------
+    factory : Callable[[], Sequence[ManagedNode]]
+        Makes the nodes, in the order in which they are started; they stop in that order too.
+    argv : Sequence[str], optional
+        Command line; None takes that of the process.
+
+    Returns
+    -------
+    int
+        Exit code: 0 asked to stop, 1 a bug, 2 a bad configuration.
+
+    """
+    stop = threading.Event()
+    before = {
+        number: signal.signal(number, lambda *_: stop.set())
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        return _run(factory, argv, stop)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _run(factory: Factory, argv: Sequence[str] | None, stop: threading.Event) -> int:
+    try:
+        rclpy.init(
+            args=None if argv is None else list(argv),
+            signal_handler_options=SignalHandlerOptions.NO)
+        nodes = list(factory())
+    except ConfigurationError as error:
+        print_problems(error.problems)
+        rclpy.try_shutdown()
+        return EXIT_CONFIGURATION
+    except Exception as error:  # noqa: B902 (rcl's own errors have no common base)
+        if not _is_rcl_refusal(error):
+            raise
+        print_problems([Problem('--ros-args', None, str(error).split(', at ')[0])])
+        rclpy.try_shutdown()
+        return EXIT_CONFIGURATION
+    executor = make_executor()
+    try:
+        for node in nodes:
+            executor.add_node(node)
+        code = start(nodes)
+        if code == EXIT_OK:
+            # what exists by now lives as long as the process: the collector need not visit it
+            gc.collect()
+            gc.freeze()
+            _spin(executor, stop.is_set, nodes)
+            bring_to_rest(executor, nodes)
+        if any(node.failed for node in nodes):
+            code = EXIT_BUG
+        return code
+    finally:
+        executor.shutdown()
+        for node in reversed(nodes):
+            node.destroy_node()
+        rclpy.try_shutdown()
+
+
+def start(nodes: Sequence[ManagedNode]) -> int:
+    """
+    Configure and activate all nodes that are to start on their own.
+
+    Parameters
+    ----------
+    nodes : Sequence[ManagedNode]
+        The nodes; all are configured before the first one is activated.
+
+    Returns
+    -------
+    int
+        Exit code so far.
+
+    """
+    own = [node for node in nodes if node.get_parameter('autostart').value]
+    results = [node.trigger_configure() for node in own]
+    if any(node.problems for node in own):
+        print_problems([
+            problem.below(node.get_name()) for node in own for problem in node.problems])
+        return EXIT_CONFIGURATION
+    if any(result is not TransitionCallbackReturn.SUCCESS for result in results):
+        return EXIT_BUG
+    # the master is activated last, so that every axis hears its first tick
+    for node in reversed(own):
+        if node.trigger_activate() is not TransitionCallbackReturn.SUCCESS:
+            return EXIT_CONFIGURATION if node.problems else EXIT_BUG
+    return EXIT_OK
+
+
+def _spin(executor: Executor, done: Callable[[], bool], nodes: Sequence[ManagedNode]) -> None:
+    """Spin in short turns; a transition that is not allowed now must not end the process."""
+    while not done():
+        try:
+            executor.spin_once(timeout_sec=_SPIN)
+        except Exception as error:  # noqa: B902 (rcl's own errors have no common base)
+            if not _is_rcl_refusal(error):
+                raise
+            nodes[0].get_logger().error(str(error).split(', at ')[0])
+
+
+def bring_to_rest(executor: Executor, nodes: Sequence[ManagedNode]) -> None:
+    """
+    Let all nodes come to rest, then deactivate them, which publishes their hold setpoints.
+
+    Parameters
+    ----------
+    executor : Executor
+        Spins meanwhile.
+    nodes : Sequence[ManagedNode]
+        The nodes.
+
+    """
+    for node in nodes:
+        node.begin_stop()
+    deadline = time.monotonic() + _STOP_WITHIN
+    _spin(executor, lambda: time.monotonic() > deadline or all(n.stopped for n in nodes), nodes)
+    for node in nodes:
+        if node.active:
+            node.trigger_deactivate()
+
+
+def print_problems(problems: Sequence[Problem]) -> None:
+    """
+    Print problems for people, to the standard error.
+
+    Parameters
+    ----------
+    problems : Sequence[Problem]
+        What is wrong.
+
+    """
+    count = len(problems)
+    print(f'The configuration cannot be used, {count} problem{"s" if count > 1 else ""}:',
+          file=sys.stderr)
+    for problem in problems:
+        print(f'  {problem}', file=sys.stderr)
+
+
+def _is_rcl_refusal(error: Exception) -> bool:
+    return type(error).__module__.startswith('rclpy') or type(error).__name__.startswith('RCL')

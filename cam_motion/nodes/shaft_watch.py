@@ -1,0 +1,82 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""Watching a shaft that others turn: does it stand, come to rest, or go on?"""
+
+from __future__ import annotations
+
+from cam_motion.nodes.wire import Point
+
+_GRACE = 0.3  # within this time [s] a master asked to stop along with us begins to slow down
+_DEFAULT_PERIOD = 0.002
+
+
+class ShaftWatch:
+    """
+    Remembers what the shaft last did.
+
+    Attributes
+    ----------
+    last : Point | None
+        The last point of the shaft.
+    period : float
+        Time between the last two points [s].
+
+    """
+
+    def __init__(self) -> None:
+        """Know nothing yet."""
+        self.last: Point | None = None
+        self.period = _DEFAULT_PERIOD
+        self._stop_from: float | None = None
+
+    def note(self, point: Point) -> None:
+        """
+        Take a point of the shaft.
+
+        Parameters
+        ----------
+        point : Point
+            Angle, speed and acceleration.
+
+        """
+        if self.last is not None:
+            step = point.sec - self.last.sec + 1e-9 * (point.nanosec - self.last.nanosec)
+            if step > 0.0:
+                self.period = step
+        self.last = point
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the shaft stands, or has never been seen."""
+        return self.last is None or (self.last.velocity == 0.0 == self.last.acceleration)
+
+    def begin_stop(self, now: float) -> None:
+        """
+        Begin to wait for the shaft to come to rest.
+
+        Parameters
+        ----------
+        now : float
+            Steady time [s].
+
+        """
+        self._stop_from = now
+
+    def goes_on(self, now: float) -> bool:
+        """
+        Tell whether the shaft goes on although it has been waited for.
+
+        Parameters
+        ----------
+        now : float
+            Steady time [s].
+
+        Returns
+        -------
+        bool
+            True when it turns, is not slowing down, and the time of grace is over.
+
+        """
+        if self.last is None or self._stop_from is None or now < self._stop_from + _GRACE:
+            return False
+        return self.last.velocity * self.last.acceleration >= 0.0

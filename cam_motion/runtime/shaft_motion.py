@@ -1,0 +1,146 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The motion of a shaft over time: phases of constant jerk, evaluated in closed form."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from cam_motion.runtime.ramp import RampLimits, RampStep, speed_ramp
+
+
+class ShaftState(NamedTuple):
+    """Angle [rad, unwrapped], speed [rad/s] and acceleration [rad/s²] of a shaft."""
+
+    phi: float
+    omega: float
+    alpha: float
+
+
+class _Phase(NamedTuple):
+    """Constant jerk from a given instant on."""
+
+    start: float
+    state: ShaftState
+    jerk: float
+
+    def at(self, t: float) -> ShaftState:
+        phi, omega, alpha = self.state
+        dt = t - self.start
+        return ShaftState(
+            phi + dt * (omega + dt * (0.5 * alpha + dt * self.jerk / 6.0)),
+            omega + dt * (alpha + 0.5 * dt * self.jerk),
+            alpha + dt * self.jerk,
+        )
+
+
+class ShaftMotion:
+    """
+    The planned motion of a shaft, from a start on and for ever.
+
+    The state at any instant comes from the start of the phase it lies in, so that nothing
+    accumulates from tick to tick. After the last step the shaft goes on at constant speed.
+
+    Parameters
+    ----------
+    start : float
+        Time at which it begins [s].
+    state : ShaftState
+        State at that time.
+    steps : Iterable[RampStep]
+        Stretches of constant jerk, one behind the other.
+    final : ShaftState, optional
+        State after the last step, exactly, where rounding on the way there would leave another.
+
+    """
+
+    def __init__(self, start: float, state: ShaftState, steps: Iterable[RampStep] = (),
+                 final: ShaftState | None = None) -> None:
+        """Lay the steps one behind the other."""
+        self._phases: list[_Phase] = []
+        self._lay(start, state, steps, final)
+
+    def _lay(self, start: float, state: ShaftState, steps: Iterable[RampStep],
+             final: ShaftState | None) -> None:
+        for duration, jerk in steps:
+            if duration > 0.0:
+                self._phases.append(_Phase(start, state, jerk))
+                start += duration
+                state = self._phases[-1].at(start)
+        self._phases.append(_Phase(start, final or state, 0.0))
+        self._starts = [phase.start for phase in self._phases]
+
+    @property
+    def settled_at(self) -> float:
+        """Time [s] at which the last step is over."""
+        return self._starts[-1]
+
+    @property
+    def final(self) -> ShaftState:
+        """State at which the last step ends."""
+        return self._phases[-1].state
+
+    def state(self, t: float) -> ShaftState:
+        """
+        Give the state at an instant.
+
+        Parameters
+        ----------
+        t : float
+            Time [s], not before the start.
+
+        Returns
+        -------
+        ShaftState
+            Angle, speed and acceleration.
+
+        """
+        return self._phases[max(0, bisect_right(self._starts, t) - 1)].at(t)
+
+    def ramped(self, t: float, target: float, limits: RampLimits) -> ShaftMotion:
+        """
+        Plan the fastest ramp to another speed, from this motion's state at an instant.
+
+        Parameters
+        ----------
+        t : float
+            Time at which the ramp begins [s].
+        target : float
+            Speed at which it ends [rad/s].
+        limits : RampLimits
+            Limits of the ramp.
+
+        Returns
+        -------
+        ShaftMotion
+            The motion from that instant on; it ends at exactly the target speed.
+
+        """
+        now = self.state(t)
+        steps = speed_ramp(now.omega, now.alpha, target, limits)
+        reached = ShaftMotion(t, now, steps).final
+        return ShaftMotion(t, now, steps, ShaftState(reached.phi, target, 0.0))
+
+    def continued(self, steps: Iterable[RampStep], final: ShaftState) -> ShaftMotion:
+        """
+        Add steps behind the last one.
+
+        Parameters
+        ----------
+        steps : Iterable[RampStep]
+            The steps.
+        final : ShaftState
+            State after them, exactly.
+
+        Returns
+        -------
+        ShaftMotion
+            This motion, then the steps.
+
+        """
+        longer = ShaftMotion(0.0, self.final)
+        longer._phases = self._phases[:-1]
+        longer._lay(self.settled_at, self.final, steps, final)
+        return longer
