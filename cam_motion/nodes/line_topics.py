@@ -1,0 +1,54 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The topics of a line, as its machine file implies them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from rclpy.qos import QoSProfile
+
+from cam_motion.io.machine import guess_line, Values
+from cam_motion.io.parameters import check_values, LINE
+from cam_motion.nodes.diagnostics import TOPIC as DIAGNOSTICS
+from cam_motion.nodes.qos import LATCHED, SETPOINTS
+
+_POINT = 'trajectory_msgs/msg/JointTrajectoryPoint'
+_JOINTS = 'sensor_msgs/msg/JointState'
+_TEXT = 'std_msgs/msg/String'
+
+
+class LineTopic(NamedTuple):
+    """Name (relative unless global), type and offered quality of service of a topic."""
+
+    name: str
+    type_name: str
+    qos: QoSProfile
+
+
+def topics_of(sections: Mapping[str, Values]) -> list[LineTopic]:
+    """
+    List what a line publishes.
+
+    Parameters
+    ----------
+    sections : Mapping[str, Mapping[str, object]]
+        Parameters of every node, by node name.
+
+    Returns
+    -------
+    list[LineTopic]
+        The topics of the contract.
+
+    """
+    names, _ = check_values(LINE, sections.get('line', guess_line(sections)))
+    parts = [names['master'], *names['axes'], *names['drives'], 'line']
+    return [
+        LineTopic('shaft', _POINT, SETPOINTS),
+        LineTopic('joint_states', _JOINTS, SETPOINTS),
+        *(LineTopic(f'{axis}/setpoint', _POINT, SETPOINTS) for axis in names['axes']),
+        *(LineTopic(f'{drive}/drive_state', _JOINTS, SETPOINTS) for drive in names['drives']),
+        *(LineTopic(f'{part}/state', _TEXT, LATCHED) for part in parts),
+        LineTopic(DIAGNOSTICS, 'diagnostic_msgs/msg/DiagnosticArray', SETPOINTS),
+    ]
