@@ -1,0 +1,111 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""The launch file must start exactly the nodes a machine file lists."""
+
+import importlib.util
+from pathlib import Path
+import sys
+from types import SimpleNamespace
+
+import pytest
+import yaml
+
+pytestmark = pytest.mark.timeout(20)
+
+MACHINE = {
+    'line': {'ros__parameters': {'master': 'shaft', 'axes': ['a', 'b'], 'drives': ['a_drive']}},
+    'shaft': {'ros__parameters': {'speed_cpm': 60.0}},
+    'a': {'ros__parameters': {'unit': 'm'}},
+}
+
+
+class Recorded:
+    """An action or a substitution of launch that remembers what it was made of."""
+
+    def __init__(self, *arguments, **options):
+        self.arguments, self.options = arguments, options
+
+    def perform(self, context):
+        return context[self.arguments[0]]
+
+
+@pytest.fixture
+def launch_file(root, monkeypatch):
+    """Import the launch file, launch itself replaced by stand-ins."""
+    for name in ('launch', 'launch.actions', 'launch.substitutions', 'launch_ros',
+                 'launch_ros.actions', 'launch_ros.parameter_descriptions'):
+        monkeypatch.setitem(sys.modules, name, SimpleNamespace(
+            DeclareLaunchArgument=Recorded, LaunchConfiguration=Recorded,
+            LaunchContext=Recorded, LaunchDescription=Recorded, Node=Recorded,
+            OpaqueFunction=Recorded, ParameterValue=lambda value, value_type: value_type(value),
+            Shutdown=Recorded))
+    path = root / 'launch' / 'cutting_machine.launch.py'
+    spec = importlib.util.spec_from_file_location('cutting_machine_launch', path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def start(launch_file, tmp_path):
+    """Return a function that gives the options of every node started."""
+    config = tmp_path / 'machine.yaml'
+    config.write_text(yaml.safe_dump(MACHINE))
+
+    def nodes(**given):
+        context = {'config': str(config), 'namespace': '', 'record': '', **given}
+        return [node.options for node in launch_file.machine_nodes(context)]
+
+    return nodes
+
+
+def test_the_default_machine_is_the_installed_one(launch_file, root):
+    assert launch_file.CONFIG == root / 'config' / 'cutting_machine.yaml'
+    assert launch_file.CONFIG.is_file()
+
+
+def test_the_arguments_are_config_namespace_and_record(launch_file):
+    actions = launch_file.generate_launch_description().arguments[0]
+    names = [action.arguments[0] for action in actions if action.arguments]
+    assert names == ['config', 'namespace', 'record']
+
+
+def test_every_listed_node_is_started_and_the_master_last(start):
+    nodes = [(node['executable'], node['name']) for node in start()]
+    assert nodes == [('drive_sim', 'a_drive'), ('cam_axis', 'a'), ('cam_axis', 'b'),
+                     ('master_shaft', 'shaft')]
+
+
+def test_a_recorder_comes_with_a_directory_only(start):
+    recorder = start(record='bag')[0]
+    assert recorder['name'] == recorder['executable'] == 'bag_recorder'
+    assert recorder['parameters'][1]['output'] == 'bag'
+    assert recorder['parameters'][1]['machine'] == recorder['parameters'][0]
+    assert 'bag_recorder' not in [node['name'] for node in start()]
+
+
+def test_the_nodes_read_the_machine_file_itself(start, tmp_path):
+    assert {node['parameters'][0] for node in start()} == {str(tmp_path / 'machine.yaml')}
+
+
+def test_a_namespace_moves_the_nodes_and_their_parameters(start):
+    nodes = start(namespace='/cell/1')
+    assert {node['namespace'] for node in nodes} == {'cell/1'}
+    moved = Path(nodes[0]['parameters'][0])
+    try:
+        sections = yaml.safe_load(moved.read_text())
+    finally:
+        moved.unlink()
+    assert sections == {f'/cell/1/{name}': section for name, section in MACHINE.items()}
+
+
+@pytest.mark.parametrize('text', ['', 'line: {ros__parameters: {axes: []}}', '- 1'])
+def test_a_file_without_a_line_is_refused_by_name(start, tmp_path, text):
+    (tmp_path / 'other.yaml').write_text(text)
+    with pytest.raises(RuntimeError, match='other.yaml: line.ros__parameters'):
+        start(config=str(tmp_path / 'other.yaml'))
