@@ -22,6 +22,7 @@ from cam_motion.io.parameters import BAG_RECORDER, check_values
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.line_topics import LineTopic, topics_of
 from cam_motion.nodes.managed_node import ManagedNode
+from cam_motion.nodes.parameters import machine_files
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.shaft_watch import ShaftWatch
 from cam_motion.nodes.wire import unpack_point
@@ -248,7 +249,7 @@ def _message_type(type_name: str) -> Any:
 def _machine_text(path: str) -> str:
     """Read the machine file: the one named, else the last one on the command line."""
     if not path:
-        given = [value for flag, value in zip(sys.argv, sys.argv[1:]) if flag == '--params-file']
+        given = machine_files()
         if not given:
             return ''
         path = given[-1]

@@ -19,7 +19,7 @@ from std_msgs.msg import String
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.parameters import is_of_every_node, ParameterSpec
 from cam_motion.nodes import diagnostics
-from cam_motion.nodes.parameters import declare, values_of
+from cam_motion.nodes.parameters import declare, take_from_any_namespace, values_of
 from cam_motion.nodes.qos import LATCHED, overridable
 
 STATE = '~/state'
@@ -55,6 +55,7 @@ class ManagedNode(LifecycleNode):
         self.active = False
         self._configured = False
         self._state_text = ''
+        take_from_any_namespace(self)
         declare(self, self.TABLE)
         self._state = self.create_publisher(
             String, STATE, LATCHED, qos_overriding_options=overridable())

@@ -4,15 +4,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+import sys
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.node import Node
 
+from cam_motion.errors import ConfigurationError
+from cam_motion.io.config import read_sections
 from cam_motion.io.parameters import is_of_every_node, ParameterSpec, REQUIRED
 
 _LARGEST = 1.7976931348623157e308
+
+
+def machine_files() -> list[str]:
+    """
+    Find the parameter files of this process.
+
+    Returns
+    -------
+    list[str]
+        What stands behind ``--params-file`` on the command line, in order.
+
+    """
+    return [value for flag, value in zip(sys.argv, sys.argv[1:]) if flag == '--params-file']
+
+
+def take_from_any_namespace(node: Node) -> None:
+    """
+    Give a node in a namespace the parameters of the section that bears its bare name.
+
+    To ROS a section ``feeder`` means the node ``/feeder`` alone. A machine file is meant for
+    the line wherever a namespace places it, so its sections apply there too; what ROS has given
+    the node already stands.
+
+    Parameters
+    ----------
+    node : Node
+        The node.
+
+    """
+    if node.get_namespace() == '/':
+        return
+    given: Mapping[str, Any] = {}
+    for path in machine_files():
+        try:
+            given = {**given, **read_sections(path).get(node.get_name(), {})}
+        except ConfigurationError:
+            continue  # ROS has read it as it could; the offline check says what is wrong
+    for name, value in given.items():
+        if value is not None and not node.has_parameter(name):
+            node.declare_parameter(
+                name, value, ParameterDescriptor(dynamic_typing=value == []),
+                ignore_override=True)
 
 
 def declare(node: Node, table: Iterable[ParameterSpec]) -> None:

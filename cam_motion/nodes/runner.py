@@ -24,6 +24,7 @@ EXIT_OK = 0
 EXIT_BUG = 1
 EXIT_CONFIGURATION = 2
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _STOP_WITHIN = 4.0  # launch sends SIGTERM 5 s after SIGINT
 _SPIN = 0.1
 
@@ -52,15 +53,14 @@ def run(factory: Factory, argv: Sequence[str] | None = None) -> int:
 
     """
     stop = threading.Event()
-    before = {
-        number: signal.signal(number, lambda *_: stop.set())
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
+    for number in _SIGNALS:
+        signal.signal(number, lambda *_: stop.set())
     try:
         return _run(factory, argv, stop)
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        # launch and impatient users send a second signal: it must not spoil the exit code
+        for number in _SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
 
 
 def _run(factory: Factory, argv: Sequence[str] | None, stop: threading.Event) -> int:
@@ -117,9 +117,9 @@ def start(nodes: Sequence[ManagedNode]) -> int:
     """
     own = [node for node in nodes if node.get_parameter('autostart').value]
     results = [node.trigger_configure() for node in own]
-    if any(node.problems for node in own):
-        print_problems([
-            problem.below(node.get_name()) for node in own for problem in node.problems])
+    if count := sum(len(node.problems) for node in own):
+        print(f'The configuration cannot be used: {_problems(count)}, listed above.',
+              file=sys.stderr)
         return EXIT_CONFIGURATION
     if any(result is not TransitionCallbackReturn.SUCCESS for result in results):
         return EXIT_BUG
@@ -172,11 +172,13 @@ def print_problems(problems: Sequence[Problem]) -> None:
         What is wrong.
 
     """
-    count = len(problems)
-    print(f'The configuration cannot be used, {count} problem{"s" if count > 1 else ""}:',
-          file=sys.stderr)
+    print(f'The configuration cannot be used, {_problems(len(problems))}:', file=sys.stderr)
     for problem in problems:
         print(f'  {problem}', file=sys.stderr)
+
+
+def _problems(count: int) -> str:
+    return f'{count} problem{"s" if count > 1 else ""}'
 
 
 def _is_rcl_refusal(error: Exception) -> bool:
