@@ -5,28 +5,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-
-from cam_motion.motion.piece import Array
 
 
 class DriveState(NamedTuple):
     """
     Motion and torque of both shafts.
 
-    Positions [rad], velocities [rad/s], torques [N m] of the motor and of the load shaft, floats
-    or arrays of one shape. The load torque is what the gearbox must deliver.
+    Positions [rad], velocities [rad/s], torques [N m] of the motor and of the load shaft: all
+    floats, or all arrays of one shape. The load torque is what the gearbox must deliver.
     """
 
-    motor_position: Array | float
-    motor_velocity: Array | float
-    motor_torque: Array | float
-    load_position: Array | float
-    load_velocity: Array | float
-    load_torque: Array | float
+    motor_position: Any
+    motor_velocity: Any
+    motor_torque: Any
+    load_position: Any
+    load_velocity: Any
+    load_torque: Any
 
 
 @dataclass(frozen=True)

@@ -59,7 +59,7 @@ class ParameterSpec:
 
     @property
     def rule(self) -> str:
-        """What is allowed, in words."""
+        """Say in words what is allowed."""
         nouns = {'double': 'a finite number', 'integer': 'a whole number', 'bool': 'true or false',
                  'string': 'a text'}
         base = self.kind.removesuffix('_list')
@@ -101,7 +101,8 @@ class ParameterSpec:
 
     def _fits(self, item: Any) -> bool:
         base = self.kind.removesuffix('_list')
-        if not isinstance(item, _KINDS[base]) or (base != 'bool' and isinstance(item, bool)):
+        kinds: Any = _KINDS[base]  # keeps the checker from narrowing the item to object
+        if not isinstance(item, kinds) or (base != 'bool' and isinstance(item, bool)):
             return False
         if self.choices and item not in self.choices:
             return False

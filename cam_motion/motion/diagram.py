@@ -36,7 +36,7 @@ class Axis:
 
     @property
     def speed_bound(self) -> SpeedBound | None:
-        """The highest steady shaft speed within the limits, and what holds it there."""
+        """Find the highest steady shaft speed within the limits, and what holds it there."""
         return self.limits.highest_speed(self.profile)
 
 

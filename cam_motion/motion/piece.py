@@ -19,6 +19,11 @@ Array = NDArray[np.float64]
 # A polynomial of this degree represents half a wave to rounding (its 25th Chebyshev coefficient
 # is below 1e-20), so zeros of mixed pieces are found on stretches of at most half a wave.
 _CHEBYSHEV_DEGREE = 24
+_CHEBYSHEV_POINTS = chebyshev.chebpts1(_CHEBYSHEV_DEGREE + 1)
+# From values at the points to coefficients: the discrete orthogonality of the polynomials.
+_CHEBYSHEV_TRANSFORM = chebyshev.chebvander(_CHEBYSHEV_POINTS, _CHEBYSHEV_DEGREE).T * (
+    2.0 / (_CHEBYSHEV_DEGREE + 1))
+_CHEBYSHEV_TRANSFORM[0] *= 0.5
 # Zeros of the interpolant that are complex only by rounding are kept: a point too many is
 # harmless, because the zeros serve as candidates at which a curve is then evaluated.
 _IMAGINARY_SLACK = 1e-4
@@ -108,7 +113,7 @@ class Piece:
 
     @cached_property
     def derivative(self) -> Piece:
-        """The derivative with respect to the local coordinate, again exact."""
+        """Differentiate with respect to the local coordinate, again exact."""
         return Piece(
             self.length,
             tuple(k * c for k, c in enumerate(self.coefficients))[1:],
@@ -245,9 +250,8 @@ def find_zeros(
     found: list[float] = []
     for low, high in zip(stretches[:-1], stretches[1:]):
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        series = chebyshev.chebinterpolate(
-            lambda x, middle=middle, half=half: function(middle + half * x), _CHEBYSHEV_DEGREE
-        )
+        nodes = middle + half * _CHEBYSHEV_POINTS
+        series = _CHEBYSHEV_TRANSFORM @ function(nodes)
         largest = float(np.max(np.abs(series)))
         if largest == 0.0:
             continue

@@ -10,12 +10,11 @@ from itertools import accumulate
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from cam_motion.errors import DomainError
-from cam_motion.motion.compiled import compile_sampler, Sample, Sampler
+from cam_motion.motion.compiled import compile_sampler, Sampler
 from cam_motion.motion.piece import Array, find_zeros, Piece
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 JOINT_TOLERANCE = 1e-9
 """Steps at joints below this share of the curve's own peak are rounding, not steps."""
@@ -77,12 +76,12 @@ class Piecewise:
 
     @cached_property
     def sample(self) -> Sampler:
-        """``sample(x)`` gives (y, y', y'', y''') for one float, compiled for speed."""
+        """Evaluate (y, y', y'', y''') for one float, compiled for speed."""
         return compile_sampler(self.breaks, self.pieces)
 
     @cached_property
     def derivative(self) -> Piecewise:
-        """The derivative of the curve, piece by piece; steps at joints leave no trace in it."""
+        """Differentiate piece by piece; steps at joints leave no trace in the derivative."""
         pieces = [piece.derivative for piece in self.pieces]
         return Piecewise(self.start, pieces, self.breaks)
 
@@ -128,10 +127,11 @@ class Piecewise:
         """
         points = np.asarray(x, dtype=float)
         edge = _EDGE * max(abs(self.start), abs(self.end), self.end - self.start)
-        if points.size and (points.min() < self.start - edge or points.max() > self.end + edge):
+        outside = (points < self.start - edge) | (points > self.end + edge)
+        if outside.any():
             raise DomainError(
                 f'the curve is defined from {self.start:g} to {self.end:g}; asked for '
-                f'{points.min():g} to {points.max():g}'
+                f'{points[outside].min():g} to {points[outside].max():g}'
             )
         return self.evaluate(points, order)
 
@@ -162,9 +162,11 @@ class Piecewise:
                     values[block] = pieces[piece](flat[block] - begin)
             else:
                 values[chosen] = pieces[piece](flat[chosen] - begin)
+        # a constant piece would give its constant for what is no number at all
+        values[np.isnan(flat)] = np.nan
         return values.reshape(points.shape)
 
-    def _runs(self, flat: Array) -> Iterator[tuple[int, float, slice | Array]]:
+    def _runs(self, flat: Array) -> Iterator[tuple[int, float, slice | NDArray[np.intp]]]:
         """Give (piece, its start, which points lie in it); slices where the points are sorted."""
         inner = np.array(self.breaks[1:-1])
         descents = np.flatnonzero(~(flat[1:] >= flat[:-1])) + 1
@@ -182,19 +184,16 @@ class Piecewise:
             if first < last:
                 yield piece, self.breaks[piece], by_piece[first:last]
 
-    def scaled(self, span: float, lift: float, start: float = 0.0, offset: float = 0.0,
-               ) -> Piecewise:
+    def scaled(self, start: float, end: float, lift: float, offset: float = 0.0) -> Piecewise:
         """
         Fit the curve into another span and lift.
 
         Parameters
         ----------
-        span : float
-            New length of the curve; positive.
+        start, end : float
+            New abscissae of both ends, rising.
         lift : float
             Factor on the values.
-        start : float
-            New abscissa of the beginning.
         offset : float
             Added to the scaled values.
 
@@ -204,10 +203,10 @@ class Piecewise:
             The scaled curve.
 
         """
-        stretch = span / (self.end - self.start)
+        stretch = (end - start) / (self.end - self.start)
         pieces = [piece.scaled(stretch, lift, offset) for piece in self.pieces]
         breaks = [start + stretch * (x - self.start) for x in self.breaks]
-        breaks[-1] = start + span
+        breaks[-1] = end
         return Piecewise(start, pieces, breaks)
 
     def candidates(self, order: int) -> Iterator[Peak]:
@@ -285,15 +284,9 @@ class Piecewise:
         """
         points: list[Peak] = []
         for begin, piece in zip(self.breaks, self.pieces):
-            v = piece.derivative
-            a, j = v.derivative, v.derivative.derivative
-            zeros = [] if v.is_zero or a.is_zero else find_zeros(
-                lambda u, v=v, a=a, j=j: a(u) ** 2 + v(u) * j(u),
-                lambda u, v=v, a=a, j=j: 3.0 * a(u) * j(u) + v(u) * j.derivative(u),
-                piece.stretches(),
-            )
+            v, a = piece.derivative, piece.derivative.derivative
             points += [Peak(v.at(u) * a.at(u), begin + u)
-                       for u in (0.0, *sorted(zeros), piece.length)]
+                       for u in (0.0, *sorted(_stationary_power(piece)), piece.length)]
         largest = max(abs(point.value) for point in points)
         return next(p for p in points if abs(p.value) >= largest * (1.0 - _TIE))
 
@@ -357,34 +350,16 @@ class Piecewise:
         pieces = self.differentiated(order).pieces
         return pieces[0].at(0.0), pieces[-1].at(pieces[-1].length)
 
-    def sample_at_end(self) -> Sample:
-        """Give (y, y', y'', y''') at the end of the curve."""
-        first, second, third = (self.end_values(order)[1] for order in (1, 2, 3))
-        return self.end_values(0)[1], first, second, third
 
-
-def from_acceleration(pieces: Iterable[Piece], start: float = 0.0) -> Piecewise:
-    """
-    Integrate an acceleration diagram twice into a rise from 0 to 1 that starts at rest.
-
-    Parameters
-    ----------
-    pieces : Iterable[Piece]
-        The acceleration in any scale; its own integral must close to zero velocity if the rise
-        is to end at rest.
-    start : float
-        Abscissa of the beginning.
-
-    Returns
-    -------
-    Piecewise
-        The normalised rise: value 0 and slope 0 at the start, value 1 at the end.
-
-    """
-    position, velocity = 0.0, 0.0
-    rise: list[Piece] = []
-    for acceleration in pieces:
-        speed = acceleration.integral(velocity)
-        rise.append(speed.integral(position))
-        velocity, position = speed.at(speed.length), rise[-1].at(speed.length)
-    return Piecewise(start, [piece.scaled(1.0, 1.0 / position) for piece in rise])
+def _stationary_power(piece: Piece) -> list[float]:
+    """Find where y' y'' of a piece is stationary: y''² + y' y''' = 0."""
+    v = piece.derivative
+    a = v.derivative
+    j = a.derivative
+    if v.is_zero or a.is_zero:
+        return []
+    return find_zeros(
+        lambda u: a(u) ** 2 + v(u) * j(u),
+        lambda u: 3.0 * a(u) * j(u) + v(u) * j.derivative(u),
+        piece.stretches(),
+    )

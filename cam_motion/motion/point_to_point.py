@@ -6,12 +6,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.laws import MotionLaw
 from cam_motion.motion.piece import Array
+import numpy as np
+from numpy.typing import ArrayLike
 
 
 class PointToPoint:
@@ -52,7 +51,7 @@ class PointToPoint:
         self.duration = duration
         self.start = start
         self.displacement = displacement
-        self.curve = law.curve.scaled(duration, displacement, 0.0, start)
+        self.curve = law.curve.scaled(0.0, duration, displacement, start)
 
     def __call__(self, t: ArrayLike, order: int = 0) -> Array:
         """

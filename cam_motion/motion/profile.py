@@ -9,15 +9,14 @@ from functools import cached_property
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.compiled import compile_periodic_sampler, Sampler
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import JOINT_TOLERANCE, Jump, Peak, Piecewise
 from cam_motion.motion.segment import Segment
 from cam_motion.units import DEGREE, TURN
+import numpy as np
+from numpy.typing import ArrayLike
 
 CLOSURE_TOLERANCE = 1e-9
 """How far the lifts of a returning cycle may miss zero, as a share of the largest lift."""
@@ -81,13 +80,13 @@ class CamProfile:
     def _join(self) -> Iterable[Piecewise]:
         start, lifts = 0.0, [0.0]
         for each in self.segments:
-            yield each.law.curve.scaled(each.end - start, each.lift, start, math.fsum(lifts))
+            yield each.law.curve.scaled(start, each.end, each.lift, math.fsum(lifts))
             start = each.end
             lifts.append(each.lift)
 
     @cached_property
     def sample(self) -> Sampler:
-        """``sample(phi)`` gives (y, y', y'', y''') at one shaft angle, compiled for speed."""
+        """Evaluate (y, y', y'', y''') at one shaft angle [rad], compiled for speed."""
         return compile_periodic_sampler(self.curve.breaks, self.curve.pieces, self.advance)
 
     def __call__(self, phi: ArrayLike, order: int = 0) -> Array:

@@ -10,11 +10,6 @@ import sys
 import time
 from typing import Any
 
-from rclpy.qos import (
-    DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-)
-from rclpy.subscription import Subscription
-
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.bag import BagError, BagWriter, QosProfile
 from cam_motion.io.config import parse_sections
@@ -26,6 +21,8 @@ from cam_motion.nodes.parameters import machine_files
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.shaft_watch import ShaftWatch
 from cam_motion.nodes.wire import unpack_point
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
 
 MACHINE = 'machine'
 """Key of the bag's custom data that holds the text of the machine file."""

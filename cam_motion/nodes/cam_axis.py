@@ -8,10 +8,6 @@ from collections.abc import Callable, Mapping
 import sys
 from typing import Any
 
-from rclpy.publisher import Publisher
-from rclpy.timer import Timer
-from trajectory_msgs.msg import JointTrajectoryPoint
-
 from cam_motion.io.machine import build_axis
 from cam_motion.io.parameters import CAM_AXIS
 from cam_motion.nodes import diagnostics
@@ -23,6 +19,9 @@ from cam_motion.nodes.wire import pack_point, Point, unpack_point
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 from cam_motion.runtime.ticks import NANOSECONDS
+from rclpy.publisher import Publisher
+from rclpy.timer import Timer
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 Listener = Callable[[Point], None]
 

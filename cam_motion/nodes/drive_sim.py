@@ -8,10 +8,6 @@ from collections.abc import Mapping
 import sys
 from typing import Any
 
-from rclpy.publisher import Publisher
-from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectoryPoint
-
 from cam_motion.io.machine import build_drive
 from cam_motion.io.parameters import DRIVE_SIM
 from cam_motion.nodes import diagnostics
@@ -21,6 +17,9 @@ from cam_motion.nodes.runner import run
 from cam_motion.nodes.wire import JointStateCodec, Point, unpack_point
 from cam_motion.runtime.ticks import NANOSECONDS
 from cam_motion.units import RPM
+from rclpy.publisher import Publisher
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 JOINTS = ('motor', 'load')
 
@@ -127,7 +126,7 @@ class DriveSim(ManagedNode):
 
     @property
     def hardware_id(self) -> str:
-        """The axis that the drive moves."""
+        """Name the axis that the drive moves."""
         return self._axis if self._states is not None else self.get_name()
 
     def health(self) -> tuple[bytes, Mapping[str, Any]]:

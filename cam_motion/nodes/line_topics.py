@@ -7,12 +7,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from rclpy.qos import QoSProfile
-
 from cam_motion.io.machine import guess_line, Values
 from cam_motion.io.parameters import check_values, LINE
 from cam_motion.nodes.diagnostics import TOPIC as DIAGNOSTICS
 from cam_motion.nodes.qos import LATCHED, SETPOINTS
+from rclpy.qos import QoSProfile
 
 _POINT = 'trajectory_msgs/msg/JointTrajectoryPoint'
 _JOINTS = 'sensor_msgs/msg/JointState'

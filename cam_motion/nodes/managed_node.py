@@ -9,18 +9,17 @@ import time
 import traceback
 from typing import Any, ClassVar
 
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io.parameters import is_of_every_node, ParameterSpec
+from cam_motion.nodes import diagnostics
+from cam_motion.nodes.parameters import declare, take_from_any_namespace, values_of
+from cam_motion.nodes.qos import LATCHED, overridable
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from std_msgs.msg import String
-
-from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.io.parameters import is_of_every_node, ParameterSpec
-from cam_motion.nodes import diagnostics
-from cam_motion.nodes.parameters import declare, take_from_any_namespace, values_of
-from cam_motion.nodes.qos import LATCHED, overridable
 
 STATE = '~/state'
 
@@ -114,7 +113,7 @@ class ManagedNode(LifecycleNode):
 
     @property
     def hardware_id(self) -> str:
-        """What the node stands for in the diagnostics."""
+        """Name what the node stands for in the diagnostics."""
         return self.get_name()
 
     # What all nodes share
@@ -126,7 +125,7 @@ class ManagedNode(LifecycleNode):
 
     @property
     def tick_clock(self) -> Clock:
-        """The clock that schedules ticks: /clock if told so, else one that nobody can set."""
+        """Choose the clock of the ticks: /clock if told so, else one that nobody can set."""
         return self.get_clock() if self.sim_time else self.steady_clock
 
     def set_state(self, text: str) -> None:
@@ -145,7 +144,7 @@ class ManagedNode(LifecycleNode):
 
     @property
     def state_text(self) -> str:
-        """The state as published."""
+        """Give the state as published."""
         return self._state_text
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:

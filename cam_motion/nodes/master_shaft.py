@@ -8,13 +8,6 @@ from collections.abc import Callable, Mapping
 import sys
 from typing import Any
 
-from rclpy.publisher import Publisher
-from rclpy.timer import Timer
-from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64
-from std_srvs.srv import SetBool, Trigger
-from trajectory_msgs.msg import JointTrajectoryPoint
-
 from cam_motion.io.machine import build_master
 from cam_motion.io.parameters import MASTER_SHAFT
 from cam_motion.nodes import diagnostics
@@ -25,6 +18,12 @@ from cam_motion.nodes.wire import JointStateCodec, pack_point, Point
 from cam_motion.runtime.shaft import Shaft, ShaftError, ShaftMode
 from cam_motion.runtime.ticks import NANOSECONDS, TickSchedule
 from cam_motion.units import RPM, TURN
+from rclpy.publisher import Publisher
+from rclpy.timer import Timer
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool, Trigger
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 SHAFT = 'shaft'
 _SIM_TIME_CATCH_UP = 1.0  # /clock may come in coarse steps: its ticks are all carried out [s]

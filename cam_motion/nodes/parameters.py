@@ -8,12 +8,11 @@ from collections.abc import Iterable, Mapping
 import sys
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from rclpy.node import Node
-
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.config import read_sections
 from cam_motion.io.parameters import is_of_every_node, ParameterSpec, REQUIRED
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.node import Node
 
 _LARGEST = 1.7976931348623157e308
 

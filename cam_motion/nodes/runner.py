@@ -11,14 +11,13 @@ import sys
 import threading
 import time
 
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.nodes.executor import make_executor
+from cam_motion.nodes.managed_node import ManagedNode
 import rclpy
 from rclpy.executors import Executor
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
-
-from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.nodes.executor import make_executor
-from cam_motion.nodes.managed_node import ManagedNode
 
 EXIT_OK = 0
 EXIT_BUG = 1

@@ -1,6 +1,6 @@
 # Copyright 2026 The cam_motion authors
 # SPDX-License-Identifier: Apache-2.0
-"""Watching a shaft that others turn: does it stand, come to rest, or go on?"""
+"""Watching a shaft that others turn: whether it stands, comes to rest, or goes on."""
 
 from __future__ import annotations
 

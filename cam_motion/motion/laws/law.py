@@ -10,12 +10,11 @@ from functools import cached_property
 import math
 from typing import Any
 
-from numpy.typing import ArrayLike
-
 from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.motion.laws.parameters import LawParameter
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import JOINT_TOLERANCE, Piecewise
-from cam_motion.motion.laws.parameters import LawParameter
+from numpy.typing import ArrayLike
 
 Builder = Callable[..., Piecewise]
 
@@ -94,7 +93,7 @@ class MotionLaw:
 
     @cached_property
     def coefficients(self) -> Coefficients:
-        """The law's characteristic values, exact to rounding."""
+        """Compute the law's characteristic values, exact to rounding."""
         curve = self.curve
         scale = max(abs(curve.peak(1).value), 1e-300)
         steps_velocity = bool(curve.jumps(1)) or any(

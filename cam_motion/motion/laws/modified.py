@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import math
 
 from cam_motion.motion.laws.law import register
-from cam_motion.motion.laws.parameters import LawParameter, SUM_TOLERANCE
+from cam_motion.motion.laws.parameters import LawParameter, SHORTEST_STAGE, SUM_TOLERANCE
 from cam_motion.motion.piece import Piece, Wave
-from cam_motion.motion.piecewise import from_acceleration, Piecewise
+from cam_motion.motion.piecewise import Piecewise
+from cam_motion.motion.rise import ending_at_one, from_acceleration
 
 _FRACTIONS = LawParameter(
     'fractions', (0.125, 0.25, 0.125, 0.0, 0.125, 0.25, 0.125),
@@ -19,8 +20,10 @@ _FRACTIONS = LawParameter(
 )
 
 
-@register('modified_trapezoid', 'seven stages of acceleration: sine, constant, sine, zero, and back',
-          'document 000, ModTVP; document 001, modified trapezoidal (seven parameters)', _FRACTIONS)
+@register('modified_trapezoid',
+          'seven stages of acceleration: sine, constant, sine, zero, and back',
+          'document 000, ModTVP; document 001, modified trapezoidal (seven parameters)',
+          _FRACTIONS)
 def modified_trapezoid(fractions: tuple[float, ...]) -> Piecewise:
     """
     Build the modified trapezoidal law from its seven stages.
@@ -60,24 +63,23 @@ def modified_trapezoid(fractions: tuple[float, ...]) -> Piecewise:
     if abs(total - 1.0) > SUM_TOLERANCE:
         raise _FRACTIONS.problem(list(fractions), f'they sum to {total:.9g}')
     x1, x2, x3, x4, x5, x6, x7 = (x / total for x in fractions)
-    if x1 + x2 + x3 == 0.0 or x5 + x6 + x7 == 0.0:
+    if max(x1, x2, x3) <= SHORTEST_STAGE or max(x5, x6, x7) <= SHORTEST_STAGE:
         raise _FRACTIONS.problem(list(fractions), 'give both halves some length')
     area_up = 2.0 / math.pi * (x1 + x3) + x2
     area_down = 2.0 / math.pi * (x5 + x7) + x6
     rise = from_acceleration([
         *_half(1.0 / area_up, x1, x2, x3),
-        *([Piece(x4)] if x4 > 0.0 else []),
+        *([Piece(x4)] if x4 > SHORTEST_STAGE else []),
         *_half(-1.0 / area_down, x5, x6, x7),
     ])
-    # the joints that rounding of the running sum would leave a hair beside 1
-    return Piecewise(0.0, rise.pieces, (*rise.breaks[:-1], 1.0))
+    return ending_at_one(rise.pieces)
 
 
 def _half(plateau: float, grow: float, hold: float, fade: float) -> Iterator[Piece]:
     """Give one half of the acceleration diagram: quarter sine, constant, quarter sine."""
-    if grow > 0.0:
+    if grow > SHORTEST_STAGE:
         yield Piece(grow, (), (Wave(0.5 * math.pi / grow, 0.0, plateau),))
-    if hold > 0.0:
+    if hold > SHORTEST_STAGE:
         yield Piece(hold, (plateau,))
-    if fade > 0.0:
+    if fade > SHORTEST_STAGE:
         yield Piece(fade, (), (Wave(0.5 * math.pi / fade, plateau, 0.0),))

@@ -14,6 +14,8 @@ from cam_motion.errors import ConfigurationError, Problem
 # Printed fractions such as 0.143 seven times are meant to sum to one; what rounding in the
 # last printed digit cannot explain is a mistake.
 SUM_TOLERANCE = 1e-6
+# A stage as short as this is what rounding leaves of a stage that is not there.
+SHORTEST_STAGE = 1e-12
 
 
 @dataclass(frozen=True)

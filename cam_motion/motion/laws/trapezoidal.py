@@ -5,9 +5,10 @@
 from __future__ import annotations
 
 from cam_motion.motion.laws.law import register
-from cam_motion.motion.laws.parameters import LawParameter, SUM_TOLERANCE
+from cam_motion.motion.laws.parameters import LawParameter, SHORTEST_STAGE, SUM_TOLERANCE
 from cam_motion.motion.piece import Piece
 from cam_motion.motion.piecewise import Piecewise
+from cam_motion.motion.rise import ending_at_one
 
 _SPLIT = LawParameter(
     'ramp_up', 0.5, 'the share of the span that accelerates, above 0 and below 1'
@@ -49,7 +50,8 @@ def constant_acceleration(ramp_up: float) -> Piecewise:
 
 
 @register('trapezoidal_velocity', 'ramp up, constant velocity, ramp down (three-step law)',
-          'document 000, TVP; document 001, asymmetric trapezoidal speed; document 002, three-step',
+          'document 000, TVP; document 001, asymmetric trapezoidal speed; '
+          'document 002, three-step',
           _RAMP_UP, _RAMP_DOWN)
 def trapezoidal_velocity(ramp_up: float, ramp_down: float | None) -> Piecewise:
     """
@@ -93,12 +95,12 @@ def _trapezoid(up: float, down: float) -> Piecewise:
     speed = 2.0 / (2.0 - up - down)
     hold = 1.0 - up - down
     pieces = []
-    if up > 0.0:
+    if up > SHORTEST_STAGE:
         pieces.append(Piece(up, (0.0, 0.0, 0.5 * speed / up)))
     position = 0.5 * speed * up
-    if hold > 0.0:
+    if hold > SHORTEST_STAGE:
         pieces.append(Piece(hold, (position, speed)))
         position += speed * hold
-    if down > 0.0:
+    if down > SHORTEST_STAGE:
         pieces.append(Piece(down, (position, speed, -0.5 * speed / down)))
-    return Piecewise(0.0, pieces)
+    return ending_at_one(pieces)
