@@ -107,10 +107,14 @@ class CamProfile:
 
         """
         angles = np.asarray(phi, dtype=float)
+        if angles.size and angles.min() >= 0.0 and angles.max() < TURN:
+            return self.curve.evaluate(angles, order)
         turns = np.floor(angles / TURN)
-        values = self.curve.evaluate(angles - turns * TURN, order)
+        within = np.asarray(turns * -TURN)
+        within += angles
+        values = self.curve.evaluate(within, order)
         if order == 0 and self.advance:
-            values = values + turns * self.advance
+            values += turns * self.advance
         return values
 
     def at_speed(self, phi: float, omega: float, alpha: float = 0.0,

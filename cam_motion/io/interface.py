@@ -1,0 +1,52 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""The ROS interface of the nodes as data: README shows it, a test compares it with the nodes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Endpoint(NamedTuple):
+    """A topic or service of a node: which way, its name, type and meaning."""
+
+    node: str
+    kind: str
+    name: str
+    type_name: str
+    meaning: str
+
+
+_POINT = 'trajectory_msgs/msg/JointTrajectoryPoint'
+_JOINTS = 'sensor_msgs/msg/JointState'
+
+INTERFACE = (
+    Endpoint('master_shaft', 'publishes', 'shaft', _POINT,
+             'every tick: [φ], [ω], [α]; time_from_start is the scheduled time of the tick'),
+    Endpoint('master_shaft', 'publishes', 'joint_states', _JOINTS, 'φ and ω for viewers'),
+    Endpoint('master_shaft', 'subscribes', '~/speed_cpm', 'std_msgs/msg/Float64',
+             'new set speed [cycles/min], at any moment'),
+    Endpoint('master_shaft', 'serves', '~/run', 'std_srvs/srv/SetBool',
+             'true: start or resume; false: controlled stop'),
+    Endpoint('master_shaft', 'serves', '~/stop_at_cycle_end', 'std_srvs/srv/Trigger',
+             'come to rest exactly at the end of a cycle'),
+    Endpoint('master_shaft', 'serves', '~/quick_stop', 'std_srvs/srv/Trigger',
+             'come to rest fast; stays stopped until reset'),
+    Endpoint('master_shaft', 'serves', '~/reset', 'std_srvs/srv/Trigger',
+             'acknowledge a quick stop'),
+    Endpoint('cam_axis', 'subscribes', 'shaft', _POINT, 'the shaft that the axis follows'),
+    Endpoint('cam_axis', 'publishes', '~/setpoint', _POINT,
+             'one per shaft point: [y], [ẏ], [ÿ]; time_from_start is copied'),
+    Endpoint('drive_sim', 'subscribes', '<axis>/setpoint', _POINT, 'the axis that it moves'),
+    Endpoint('drive_sim', 'publishes', '~/drive_state', _JOINTS,
+             'joints motor and load: position, velocity, effort (rad, rad/s, N m)'),
+    Endpoint('all', 'publishes', '~/state', 'std_msgs/msg/String', 'latched: what the node does'),
+    Endpoint('all', 'publishes', '/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray',
+             'health and figures, once a second'),
+)
+"""Every topic and service of the nodes but those that ROS gives to every lifecycle node."""
