@@ -11,6 +11,11 @@ import json
 import sys
 import time
 
+from cam_motion.nodes.cam_axis import CamAxis
+from cam_motion.nodes.executor import make_executor
+from cam_motion.nodes.qos import SETPOINTS
+from cam_motion.nodes.runner import start
+from cam_motion.nodes.wire import pack_point
 import rclpy
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
@@ -18,11 +23,6 @@ from rclpy.signals import SignalHandlerOptions
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from benchmarks.line_child import _CAM
-from cam_motion.nodes.cam_axis import CamAxis
-from cam_motion.nodes.executor import make_executor
-from cam_motion.nodes.qos import SETPOINTS
-from cam_motion.nodes.runner import start
-from cam_motion.nodes.wire import pack_point
 
 _BURST = 10  # what the axis' own queue holds
 _BURSTS = 300

@@ -12,15 +12,14 @@ import resource
 import sys
 import time
 
-import rclpy
-from rclpy.parameter import Parameter
-from rclpy.signals import SignalHandlerOptions
-
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.executor import make_executor
 from cam_motion.nodes.master_shaft import MasterShaft
 from cam_motion.nodes.runner import start
 from cam_motion.nodes.wire import Point
+import rclpy
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
 
 _CAM = {
     'segments': ['cut', 'dwell', 'back', 'rest'],

@@ -14,8 +14,9 @@ import subprocess
 import sys
 from tempfile import TemporaryDirectory
 
-from benchmarks.row import Row
 from cam_motion.nodes.executor import CHOICE
+
+from benchmarks.row import Row
 
 _AXES = 8
 _RATE_HZ = 1000.0

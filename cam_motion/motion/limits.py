@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.piecewise import Peak
 from cam_motion.motion.profile import CamProfile, SegmentPeaks
 
@@ -40,11 +41,27 @@ class Limits:
     velocity, acceleration, jerk : float | None
         In the unit of the axis per s, s² and s³; positive.
 
+    Raises
+    ------
+    ConfigurationError
+        When a limit is not a finite number above 0.
+
     """
 
     velocity: float | None = None
     acceleration: float | None = None
     jerk: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse limits that are none."""
+        problems = [
+            Problem(f'limits.{name}', value, 'must be a finite number above 0',
+                    'leave it out where nothing limits the axis')
+            for name, value in vars(self).items()
+            if value is not None and not (math.isfinite(value) and value > 0.0)
+        ]
+        if problems:
+            raise ConfigurationError(problems)
 
     def of_order(self, order: int) -> float | None:
         """

@@ -86,7 +86,12 @@ class CamProfile:
 
     @cached_property
     def sample(self) -> Sampler:
-        """Evaluate (y, y', y'', y''') at one shaft angle [rad], compiled for speed."""
+        """
+        Evaluate (y, y', y'', y''') at one shaft angle [rad], compiled for speed.
+
+        The angle must be finite: NaN raises ValueError and infinity OverflowError, which costs
+        nothing on the hot path; whoever takes angles from outside looks at them before.
+        """
         return compile_periodic_sampler(self.curve.breaks, self.curve.pieces, self.advance)
 
     def __call__(self, phi: ArrayLike, order: int = 0) -> Array:

@@ -175,7 +175,10 @@ class Shaft:
 
     def stop_at_cycle_end(self, t: float) -> None:
         """
-        Go on at the set speed and come to rest exactly at the end of a cycle, the first possible.
+        Go on at the set speed and come to rest exactly at the end of a cycle.
+
+        It is the first end at which the shaft can stop from its set speed; a ramp under way is
+        finished before.
 
         Parameters
         ----------

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 NANOSECONDS = 1_000_000_000
 """Nanoseconds in a second."""
 
@@ -41,6 +43,7 @@ class TickSchedule:
     def __init__(self, rate: float, catch_up: float) -> None:
         """Begin before the first tick."""
         self.rate = rate
+        self._period = (NANOSECONDS / Fraction(rate)).as_integer_ratio()
         self.catch_up = catch_up
         self.late = 0
         self.missed = 0
@@ -69,7 +72,8 @@ class TickSchedule:
             Time since the machine's time base began [ns].
 
         """
-        return round(tick * NANOSECONDS / self.rate)
+        # in whole numbers: a float is exact to the nanosecond for 104 days only
+        return (2 * tick * self._period[0] + self._period[1]) // (2 * self._period[1])
 
     def resume(self) -> None:
         """Go on after a pause: the next clock reading is when the next tick is due."""
@@ -99,7 +103,7 @@ class TickSchedule:
             self.restarts += 1
             self._zero_ns = now_ns - self.time_ns(self.next_tick)
             newest = self.next_tick
-        oldest = max(self.next_tick, newest - int(self.catch_up * self.rate))
+        oldest = max(self.next_tick, newest - int(self.catch_up * self.rate + _EARLY))
         self.missed += oldest - self.next_tick
         self.late += max(0, newest - oldest)
         if newest >= oldest:

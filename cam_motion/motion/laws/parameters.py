@@ -11,8 +11,8 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
 
-# Printed fractions such as 0.143 seven times are meant to sum to one; what rounding in the
-# last printed digit cannot explain is a mistake.
+# Fractions written with seven digits or more, as 0.1428571 seven times, are meant to sum to one;
+# what rounding in the seventh digit cannot explain is a mistake.
 SUM_TOLERANCE = 1e-6
 # A stage as short as this is what rounding leaves of a stage that is not there.
 SHORTEST_STAGE = 1e-12

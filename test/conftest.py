@@ -1,0 +1,32 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What all tests share: how many random examples are tried, and from which seed.
+
+With ``CI=true`` the examples are always the same ones. ``CAM_MOTION_EXAMPLES=2000`` tries that
+many of each family instead, and gives each test so much more time.
+"""
+
+import os
+
+from hypothesis import HealthCheck, settings
+import pytest
+
+USUAL_EXAMPLES = 40
+EXAMPLES = int(os.environ.get('CAM_MOTION_EXAMPLES', USUAL_EXAMPLES))
+
+# A loaded machine may be slow to draw or to run one example; pytest-timeout watches the whole.
+_SHARED = settings(max_examples=EXAMPLES, deadline=None,
+                   suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile('random', _SHARED)
+settings.register_profile('seeded', _SHARED, derandomize=True, database=None, print_blob=True)
+settings.load_profile('seeded' if os.environ.get('CI', '').lower() in ('1', 'true') else 'random')
+
+
+def pytest_collection_modifyitems(items):
+    """Give tests more time where more examples are asked for."""
+    more = EXAMPLES / USUAL_EXAMPLES
+    for item in items:
+        marker = item.get_closest_marker('timeout')
+        if more > 1.0 and marker and marker.args:
+            item.add_marker(pytest.mark.timeout(more * marker.args[0]), append=False)
