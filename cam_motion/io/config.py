@@ -9,10 +9,9 @@ from pathlib import Path
 import re
 from typing import Any
 
-import yaml
-
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.machine import build_machine, Machine, Values
+import yaml
 
 _HINT = 'a machine file has a key per node, and ros__parameters: below each'
 _EVERY_NODE = '/**'
@@ -42,7 +41,7 @@ def _mapping_without_duplicates(loader: _Loader, node: yaml.MappingNode) -> dict
             raise ConfigurationError([Problem(
                 str(key), key, f'stands twice (line {key_node.start_mark.line + 1})',
                 'keep one of them')])
-    return loader.construct_mapping(node, deep=True)
+    return dict(loader.construct_mapping(node, deep=True))
 
 
 _Loader.add_constructor(
@@ -103,7 +102,8 @@ def parse_sections(text: str, source: str = 'configuration') -> dict[str, Values
     """
     try:
         tree = yaml.load(text, Loader=_Loader)  # noqa: S506 (a SafeLoader by inheritance)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        # ValueError: dates such as 2026-13-45 and endless numbers; RecursionError: [[[[...
         mark = getattr(error, 'problem_mark', None)
         place = f'{source}:{mark.line + 1}:{mark.column + 1}' if mark else source
         reason = getattr(error, 'problem', None) or str(error)
@@ -126,6 +126,13 @@ def parse_sections(text: str, source: str = 'configuration') -> dict[str, Values
             shared = flat
         else:
             sections.setdefault(key.rsplit('/', 1)[-1], {}).update(flat)
+    problems += [
+        Problem(f'{name}.{key}', str(value)[:40],
+                'a whole number must fit into 64 bits, as in ROS')
+        for name, own in (*sections.items(), (_EVERY_NODE, shared)) for key, value in own.items()
+        for item in (value if isinstance(value, list) else [value])
+        if isinstance(item, int) and not -2 ** 63 <= item < 2 ** 63
+    ]
     if problems:
         raise ConfigurationError(problems)
     return {name: {**shared, **own} for name, own in sections.items()}

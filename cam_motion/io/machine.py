@@ -22,6 +22,12 @@ from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.units import DEGREE, rate_text, RPM
 
+SHORTEST_DEG = 1e-6
+"""Least span of a segment [deg]: with less, nothing is left of an angle but its rounding."""
+
+LARGEST_LIFT = 1e15
+"""Largest magnitude of a lift, in the unit of its axis."""
+
 Values = Mapping[str, Any]
 """Parameters of one node by flat name."""
 
@@ -179,6 +185,7 @@ def build_axis(name: str, given: Values) -> Axis:
         built, wrong = _build_segment(segment, below[segment])
         segments.append(built)
         problems += [problem.below(segment) for problem in wrong]
+    problems += _span_problems(segments)
     accumulate = values['cycle'] == 'accumulate'
     if problems and segments:
         # angles and lifts are looked at although a law or another parameter is wrong
@@ -189,6 +196,23 @@ def build_axis(name: str, given: Values) -> Axis:
         raise ConfigurationError(problems)
     limits = Limits(*(values[f'limits.{quantity}'] for quantity in QUANTITIES[1:]))
     return Axis(name, CamProfile(segments, accumulate), values['unit'], limits)
+
+
+def _span_problems(segments: list[Segment]) -> list[Problem]:
+    """Find segments whose numbers no machine has, and with which the cam would overflow."""
+    problems = []
+    start = 0.0
+    for segment in segments:
+        if 0.0 < segment.end_deg - start < SHORTEST_DEG:
+            problems.append(Problem(
+                f'{segment.name}.end_deg', segment.end_deg, 'a segment must span at least '
+                f'{SHORTEST_DEG:g} deg', 'leave the segment out'))
+        if math.isfinite(segment.lift) and abs(segment.lift) > LARGEST_LIFT:
+            problems.append(Problem(
+                f'{segment.name}.lift', segment.lift,
+                f'a lift must be at most {LARGEST_LIFT:g}', 'take a larger unit'))
+        start = segment.end_deg
+    return problems
 
 
 def _build_segment(name: str, given: Values) -> tuple[Segment, list[Problem]]:
@@ -289,8 +313,8 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
         master = build(build_master, line['master'], 'master shaft')
     else:
         master = build_master(line['master'], {})
-    axes = {name: build(build_axis, name, 'axis') for name in line['axes']}
-    drives = {name: build(build_drive, name, 'drive') for name in line['drives']}
+    axes = {name: build(build_axis, name, 'axis') for name in dict.fromkeys(line['axes'])}
+    drives = {name: build(build_drive, name, 'drive') for name in dict.fromkeys(line['drives'])}
     problems += [
         Problem(f'{name}.axis', followed, 'a drive follows an axis of the line',
                 'known are: ' + ', '.join(axes))
@@ -360,7 +384,8 @@ def speed_problems(axis: Axis, omega: float) -> list[Problem]:
             rule = f'the acceleration steps in {where}: no jerk limit can be met'
             hint = 'take a law whose acceleration is continuous, or leave the jerk unlimited'
         else:
-            needed = limit * (abs(omega) / bound.omega) ** order
+            # a product grows to infinity where a power would raise
+            needed = limit * math.prod([abs(omega) / bound.omega] * order)
             rule = (f'at {abs(omega) / RPM:g} cycles/min {where} needs {needed:.6g} {unit}')
             hint = (f'run at most {bound.omega / RPM:.6g} cycles/min, raise the limit, or give '
                     'the segment more angle or another law')

@@ -1,0 +1,122 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verb ``check``: problems, peaks per segment, highest speed and what holds it back."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from cam_motion.cli.options import add_config, add_json, add_speed
+from cam_motion.cli.terminal import console, number, print_json, print_problems, row, speed, table
+from cam_motion.errors import ConfigurationError
+from cam_motion.io.config import read_sections
+from cam_motion.io.summary import AxisSummary, bound_text, check_sections, CheckSummary
+from cam_motion.io.summary_data import check_as_data
+from cam_motion.motion.limits import QUANTITIES
+from cam_motion.units import rate_text
+
+_SLACK = 1e-9  # how far (relative) a peak may exceed its limit by rounding, as in the check
+
+
+def add_to(verbs: Any) -> None:
+    """
+    Add the verb.
+
+    Parameters
+    ----------
+    verbs : argparse._SubParsersAction
+        The verbs.
+
+    """
+    parser = verbs.add_parser(
+        'check', help='check a machine file; peaks, and the highest speed',
+        description='Check a machine file: every problem at once, the peaks of each segment at '
+                    'the set speed, and the highest speed within the limits of every axis. '
+                    'Exit code 2 if there is any problem.')
+    add_config(parser)
+    add_speed(parser)
+    add_json(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """
+    Check a machine file and print what was found.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed arguments.
+
+    Returns
+    -------
+    int
+        0 where all is well, 2 where there is a problem.
+
+    """
+    try:
+        check = check_sections(read_sections(arguments.config), arguments.speed_cpm)
+    except ConfigurationError as error:
+        check = CheckSummary(error.problems, None, {})
+    if arguments.json:
+        print_json(check_as_data(check))
+    else:
+        _print(check, arguments.config)
+    return 2 if check.problems else 0
+
+
+def _print(check: CheckSummary, source: str) -> None:
+    out = console()
+    for axis in check.axes.values():
+        _print_axis(axis, check.speed_cpm or 0.0)
+    if check.axes:
+        line = check.line_bound
+        if line is None:
+            out.print('highest speed not limited: no axis has limits that bind')
+        else:
+            name, bound = line
+            unit = check.axes[name].axis.unit
+            out.print(f'highest speed {speed(bound.omega)} cycles/min, '
+                      f'held back by {name}, {bound_text(bound, unit)}', style='bold')
+    if check.problems:
+        out.file.flush()
+        print_problems(check.problems, source)
+    else:
+        out.print(f'no problems in {source}')
+
+
+def _print_axis(summary: AxisSummary, speed_cpm: float) -> None:
+    axis, bound = summary.axis, summary.bound
+    caption = 'no limit binds'
+    if bound is not None:
+        caption = (f'up to {speed(bound.omega)} cycles/min; '
+                   f'limited by {bound_text(bound, axis.unit)}')
+    advance = axis.profile.advance
+    gain = f', advances {number(advance)} {axis.unit} per cycle' if advance else ''
+    out = table(
+        f'{axis.name} at {number(speed_cpm)} cycles/min{gain}', [
+            ('segment', 'left'), ('law', 'left'), ('from\ndeg', 'right'), ('to\ndeg', 'right'),
+            (f'lift\n{axis.unit}', 'right'),
+            *((f'{name}\n{rate_text(axis.unit, order)}', 'right')
+              for order, name in enumerate(QUANTITIES[1:], start=1)),
+        ], caption)
+    limits = [axis.limits.of_order(order) for order in (1, 2, 3)]
+    for segment in summary.segments:
+        figures = [number(segment.start_deg), number(segment.end_deg)]
+        if segment.law != 'dwell':
+            figures += [number(segment.lift), *map(_figure, segment.physical, limits)]
+        else:
+            figures += [''] * 4
+        row(out, segment.name, segment.law, *figures,
+            style='dim' if segment.law == 'dwell' else None)
+    if any(limits):
+        out.add_section()
+        row(out, 'limit', '', '', '', '', *('' if x is None else number(x) for x in limits))
+    console().print(out)
+
+
+def _figure(value: float, limit: float | None) -> str:
+    """Write a peak, marked where it exceeds its limit."""
+    broken = limit is not None and abs(value) > limit * (1.0 + _SLACK)
+    return ('! ' if broken else '') + number(value)

@@ -1,0 +1,100 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verb ``laws``: the catalogue of motion laws with their coefficients."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import asdict
+import math
+from typing import Any
+
+from cam_motion.cli.options import add_json
+from cam_motion.cli.terminal import console, number, print_json, row, table
+from cam_motion.io.plain import finite, plain
+from cam_motion.motion.laws import Coefficients, LAWS, LawType, make_law
+
+_WIDE = 110  # columns needed for coefficients and prose side by side
+
+
+def add_to(verbs: Any) -> None:
+    """
+    Add the verb.
+
+    Parameters
+    ----------
+    verbs : argparse._SubParsersAction
+        The verbs.
+
+    """
+    text = 'list the motion laws with their coefficients'
+    parser = verbs.add_parser('laws', help=text, description=text.capitalize() + '.')
+    add_json(parser, 'the list')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """
+    Print the catalogue.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed arguments.
+
+    Returns
+    -------
+    int
+        0.
+
+    """
+    if arguments.json:
+        print_json([_as_data(law) for law in LAWS.values()])
+        return 0
+    out = console()
+    # a narrow terminal gets what each law is as a list of its own
+    wide = out.width >= _WIDE
+    prose = [('what it is', 'full')]
+    made = table(
+        'Motion laws, normalised: lift 1 over span 1', [
+            ('law', 'left'), ('Cv', 'right'), ('Ca', 'right'), ('Cj', 'right'),
+            ('power', 'right'), ('RMS acc.', 'right'), *(prose if wide else []),
+        ],
+        'Real peaks: velocity Cv h/T, acceleration Ca h/T², jerk Cj h/T³ for a lift h in a time '
+        "T.\nPower is max|s' s''|. Where the acceleration steps, the jerk is infinite; in brackets"
+        '\nthe largest between the steps. Laws with parameters are shown at their defaults.')
+    for law in LAWS.values():
+        found = make_law(law.name).coefficients
+        row(made, law.name, number(found.cv), number(found.ca), _jerk(found),
+            number(found.power), number(found.rms_acceleration), *([_what(law)] if wide else []))
+    out.print(made)
+    if not wide:
+        made = table('', [('law', 'left'), *prose])
+        for law in LAWS.values():
+            row(made, law.name, _what(law))
+        out.print(made)
+    return 0
+
+
+def _jerk(found: Coefficients) -> str:
+    text = number(found.cj)
+    return text + f' [{number(found.cj_inside)}]' if math.isinf(found.cj) else text
+
+
+def _what(law: LawType) -> str:
+    names = ', '.join(parameter.name for parameter in law.parameters)
+    return f'{law.summary}; takes {names}' if names else law.summary
+
+
+def _as_data(law: LawType) -> dict[str, Any]:
+    coefficients = asdict(make_law(law.name).coefficients)
+    return {
+        'name': law.name,
+        **{key: finite(value) for key, value in coefficients.items()},
+        'summary': law.summary,
+        'source': law.source,
+        'parameters': [
+            {'name': each.name, 'default': plain(each.default), 'rule': each.rule,
+             'count': each.count} for each in law.parameters
+        ],
+    }

@@ -1,0 +1,89 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verb ``line``: run a machine, watch it, record it, stop it cleanly."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from cam_motion.cli.child import require_ros, stop_signals
+from cam_motion.cli.live import Display
+from cam_motion.cli.options import add_config, add_json, add_speed, check_new_bag, seconds
+from cam_motion.cli.session import Session
+from cam_motion.cli.terminal import print_json
+from cam_motion.cli.watch import LineWatch
+from cam_motion.io.config import read_sections
+from cam_motion.io.machine import build_machine
+from cam_motion.io.summary import with_speed
+
+
+def add_to(verbs: Any) -> None:
+    """
+    Add the verb.
+
+    Parameters
+    ----------
+    verbs : argparse._SubParsersAction
+        The verbs.
+
+    """
+    parser = verbs.add_parser(
+        'line', help='run the machine (needs ROS 2)',
+        description='Check the machine file, then run the whole machine, with a live display. '
+                    'Ctrl-C stops it cleanly.')
+    add_config(parser)
+    add_speed(parser)
+    parser.add_argument('--seconds', type=seconds, metavar='S',
+                        help='stop after this time (default: on Ctrl-C)')
+    parser.add_argument('--record', metavar='DIR', type=Path,
+                        help='record into this bag, which must not exist')
+    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
+                        help='storage of the bag (default: mcap)')
+    add_json(parser, 'a final summary')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """
+    Run a machine until it is asked to stop.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed arguments.
+
+    Returns
+    -------
+    int
+        Exit code of the line, or of the recorder if only that one failed.
+
+    Raises
+    ------
+    ConfigurationError
+        When the machine file cannot be used, or the bag exists.
+    CamMotionError
+        When rclpy is missing or the recorder does not begin.
+
+    """
+    sections = read_sections(arguments.config)
+    if arguments.speed_cpm is not None:
+        sections = with_speed(sections, arguments.speed_cpm)
+    machine = build_machine(sections)
+    if arguments.record is not None:
+        check_new_bag('--record', arguments.record)
+    require_ros()
+    display = Display(machine, arguments.config, quiet=arguments.json)
+    with stop_signals() as asked, LineWatch(machine) as watch, display:
+        session = Session(arguments, machine, watch, display, asked)
+        try:
+            session.begin()
+            session.go_on()
+        finally:
+            code = session.end()
+    if arguments.json:
+        print_json(session.summary(code))
+    elif arguments.record is not None:
+        print(f'recorded into {arguments.record}')
+    return code

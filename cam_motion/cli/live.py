@@ -1,0 +1,179 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The display of a running line: a table that lives on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import monotonic
+from types import TracebackType
+
+from cam_motion.cli.terminal import console, number, row, table
+from cam_motion.cli.watch import Snapshot
+from cam_motion.io.machine import Machine
+from cam_motion.units import rate_text
+from rich.console import Group
+from rich.live import Live
+from rich.text import Text
+
+REFRESH = 0.2
+"""Time between two looks [s]."""
+
+_LINE_EVERY = 1.0  # plain lines come slower [s]
+
+
+class Display:
+    """
+    Shows snapshots; to be used as a context.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    title : str
+        What is running.
+    quiet : bool
+        Whether to show nothing.
+
+    """
+
+    def __init__(self, machine: Machine, title: str, quiet: bool = False) -> None:
+        """Find out where the output goes."""
+        self._machine = machine
+        self._title = title
+        self._quiet = quiet
+        self._console = console()
+        self._live: Live | None = None
+        self._next_line = 0.0
+        self._waiting = ''
+        if self._console.is_terminal and not quiet:
+            self._live = Live(console=self._console, auto_refresh=False, transient=False)
+
+    @property
+    def printer(self) -> Callable[[str], None] | None:
+        """Prints a line above the table; None where lines may go straight to standard error."""
+        return None if self._live is None else self._print_above
+
+    def _print_above(self, line: str) -> None:
+        if self._live is not None:
+            self._live.console.print(Text.from_ansi(line))
+
+    def show(self, seen: Snapshot, note: str = '') -> None:
+        """
+        Show a snapshot.
+
+        Parameters
+        ----------
+        seen : Snapshot
+            The snapshot.
+        note : str
+            What the line is about to do.
+
+        """
+        if self._live is not None:
+            self._live.update(render(self._machine, seen, self._title, note), refresh=True)
+        elif not self._quiet:
+            self._show_plainly(seen, note)
+
+    def _show_plainly(self, seen: Snapshot, note: str) -> None:
+        """Print a line now and then, but what is waited for only once."""
+        if seen.time is None:
+            waiting = note or 'waiting for the shaft'
+            if waiting != self._waiting:
+                print(waiting, flush=True)
+            self._waiting = waiting
+        elif monotonic() >= self._next_line:
+            self._next_line = monotonic() + _LINE_EVERY
+            print(plain_line(self._machine, seen) + (f'  {note}' if note else ''), flush=True)
+
+    def __enter__(self) -> Display:
+        """Begin to live."""
+        if self._live is not None:
+            self._live.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 traceback: TracebackType | None) -> None:
+        """Leave the last table standing."""
+        if self._live is not None:
+            self._live.stop()
+
+
+def render(machine: Machine, seen: Snapshot, title: str, note: str = '') -> Group:
+    """
+    Build the table of a snapshot.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    seen : Snapshot
+        The snapshot.
+    title : str
+        What is running.
+    note : str
+        What the line is about to do.
+
+    Returns
+    -------
+    Group
+        For rich to print.
+
+    """
+    made = table(f'{title}  {note}'.rstrip(), [
+        ('', 'left'), ('now', 'right'), ('', 'left'), ('now', 'right'), ('', 'left')])
+    if seen.time is None:
+        row(made, machine.master.name, 'waiting', '', '', '')
+    else:
+        row(made, machine.master.name, f'{seen.speed_cpm:.1f}', 'cycles/min',
+            f'{seen.angle_deg:.1f}', 'deg')
+        row(made, '', str(seen.cycles), 'cycles', f'{seen.time:.1f}', 's')
+    for name, motion in seen.axes.items():
+        unit = machine.diagram.axes[name].unit
+        row(made, name, *_pair(motion, unit, rate_text(unit, 1), 4))
+    for name, effort in seen.drives.items():
+        row(made, name, *_pair(effort, 'N m', 'rpm', 1))
+    return Group(made, Text(_health_text(seen)))
+
+
+def _pair(values: tuple[float, float] | None, first: str, second: str, places: int,
+          ) -> tuple[str, str, str, str]:
+    if values is None:
+        return '-', first, '-', second
+    # adding zero turns -0.0 into 0.0
+    texts = [f'{round(value, places) + 0.0:.{places}f}' for value in values]
+    return texts[0], first, texts[1], second
+
+
+def _health_text(seen: Snapshot) -> str:
+    missed, late = seen.health.get('missed_ticks', '-'), seen.health.get('late_ticks', '-')
+    return f'ticks missed {missed}, late {late}'
+
+
+def plain_line(machine: Machine, seen: Snapshot) -> str:
+    """
+    Write a snapshot as one line.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    seen : Snapshot
+        The snapshot.
+
+    Returns
+    -------
+    str
+        Time, shaft, axes, drives, ticks missed.
+
+    """
+    parts = [
+        f'{seen.time or 0.0:7.2f} s', f'{number(round(seen.speed_cpm, 1))} cycles/min',
+        f'cycle {seen.cycles} at {seen.angle_deg:5.1f} deg',
+    ]
+    for name, motion in seen.axes.items():
+        unit = machine.diagram.axes[name].unit
+        parts.append(' '.join((name, *_pair(motion, unit, rate_text(unit, 1), 4))))
+    parts += [' '.join((name, *_pair(effort, 'N m', 'rpm', 1)))
+              for name, effort in seen.drives.items()]
+    return '  '.join((*parts, _health_text(seen)))

@@ -1,0 +1,82 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verb ``record``: record a line that runs elsewhere."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+from cam_motion.cli.child import recorder, require_ros, stop_signals
+from cam_motion.cli.options import add_config, add_json, check_new_bag, seconds
+from cam_motion.cli.terminal import print_json
+from cam_motion.io.config import load_machine
+
+
+def add_to(verbs: Any) -> None:
+    """
+    Add the verb.
+
+    Parameters
+    ----------
+    verbs : argparse._SubParsersAction
+        The verbs.
+
+    """
+    parser = verbs.add_parser(
+        'record', help='record a running machine (needs ROS 2)',
+        description='Record every topic of a running machine into a rosbag2 bag. Ctrl-C ends it.')
+    add_config(parser)
+    parser.add_argument('-o', '--output', metavar='DIR', type=Path, required=True,
+                        help='directory of the bag, which must not exist')
+    parser.add_argument('--seconds', type=seconds, metavar='S',
+                        help='stop after this time (default: on Ctrl-C)')
+    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
+                        help='storage of the bag (default: mcap)')
+    add_json(parser, 'a final summary')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """
+    Record until asked to stop.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed arguments.
+
+    Returns
+    -------
+    int
+        Exit code of the recorder.
+
+    Raises
+    ------
+    ConfigurationError
+        When the machine file cannot be used, or the bag exists.
+    CamMotionError
+        When rclpy is missing.
+
+    """
+    load_machine(arguments.config)
+    check_new_bag('--output', arguments.output)
+    require_ros()
+    with stop_signals() as asked:
+        child = recorder(arguments.config, arguments.output, arguments.storage)
+        began = monotonic()
+        end = None if arguments.seconds is None else began + arguments.seconds
+        while not child.ended and (end is None or monotonic() < end):
+            if asked.wait(0.1):
+                break
+        child.ask_to_stop()
+        code = child.end()
+    lasted = monotonic() - began
+    if arguments.json:
+        print_json({
+            'exit_code': code, 'seconds': round(lasted, 3), 'bag': str(arguments.output)})
+    elif code == 0:
+        print(f'recorded {lasted:.1f} s into {arguments.output}')
+    return code

@@ -1,0 +1,97 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""A report as tables for people."""
+
+from __future__ import annotations
+
+from cam_motion.cli.terminal import console, number, row, table
+from cam_motion.io.comparison import TOLERANCE_TEXT
+from cam_motion.io.findings import findings, notes
+from cam_motion.io.report import Report
+from cam_motion.units import rate_text, RPM
+from rich.table import Table
+
+
+def print_report(report: Report) -> None:
+    """
+    Print a report.
+
+    Parameters
+    ----------
+    report : Report
+        The report.
+
+    """
+    out = console()
+    recording, ticks = report.recording, report.ticks
+    size = sum(recording.files.values())
+    out.print(f'{recording.path}: {sum(recording.counts.values())} messages on '
+              f'{len(recording.counts)} topics, {size / 1e6:.2f} MB', style='bold')
+    for name, bytes_ in recording.files.items():
+        out.print(f'  {name}  {bytes_} B')
+    out.print(f'duration {report.duration:.3f} s, {report.cycles:.3f} cycles, up to '
+              f'{number(report.top_speed / RPM, 6)} cycles/min')
+    out.print(f'ticks {ticks.recorded} recorded, {ticks.expected} expected, {ticks.missed} missed '
+              f'(grid of {number(ticks.rate_hz)} Hz)')
+    out.print()
+    out.print(_axes_table(report))
+    out.print(_peaks_table(report))
+    if report.drives:
+        out.print(_drives_table(report))
+    out.print(_messages_table(report))
+    for note in notes(report):
+        out.print(f'note: {note}')
+    found = findings(report)
+    for finding in found:
+        out.print(f'FINDING: {finding}', style='bold red')
+    if not found:
+        holds = _some_holds(report)
+        out.print(f"every setpoint is within {TOLERANCE_TEXT} of its axis' own peak, and every "
+                  f'shaft tick is answered{holds}', style='bold')
+
+
+def _some_holds(report: Report) -> str:
+    holds = sum(axis.holds for axis in report.axes.values())
+    return f' ({holds} hold setpoints at the end set aside)' if holds else ''
+
+
+def _axes_table(report: Report) -> Table:
+    made = table(
+        'worst deviation from the exact curve, as a share of the own peak', [
+            ('axis', 'left'), ('setpoints', 'right'), ('unanswered', 'right'), ('holds', 'right'),
+            ('position', 'right'), ('velocity', 'right'), ('acceleration', 'right')])
+    for name, axis in report.axes.items():
+        row(made, name, str(axis.setpoints), str(axis.unanswered), str(axis.holds),
+            *(number(worst, 2) for worst in axis.deviations))
+    return made
+
+
+def _peaks_table(report: Report) -> Table:
+    made = table('peaks reached', [
+        ('axis', 'left'), ('velocity', 'right'), ('limit', 'right'), ('', 'left'),
+        ('acceleration', 'right'), ('limit', 'right'), ('', 'left')])
+    for name, report_ in report.axes.items():
+        cells = []
+        for order, peak in enumerate(report_.peaks, start=1):
+            limit = report_.axis.limits.of_order(order)
+            cells += [number(peak), '' if limit is None else number(limit),
+                      rate_text(report_.axis.unit, order)]
+        row(made, name, *cells)
+    return made
+
+
+def _drives_table(report: Report) -> Table:
+    made = table('drives', [
+        ('drive', 'left'), ('states', 'right'), ('peak torque\nN m', 'right'),
+        ('RMS torque\nN m', 'right'), ('peak speed\nrpm', 'right')])
+    for name, drive in report.drives.items():
+        row(made, name, str(drive.states), number(drive.peak_torque), number(drive.rms_torque),
+            number(drive.peak_speed / RPM))
+    return made
+
+
+def _messages_table(report: Report) -> Table:
+    made = table('messages', [('topic', 'left'), ('count', 'right')])
+    for name, count in report.recording.counts.items():
+        row(made, name, str(count))
+    return made

@@ -1,0 +1,239 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""A cam shaft driven by a motor through a gearbox, with a flywheel, against a load."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from cam_motion.drive.gearbox import Gearbox
+from cam_motion.drive.load import Follower, Part, Terms
+from cam_motion.drive.motor import Motor
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.motion.piece import Array
+from cam_motion.motion.profile import CamProfile
+from cam_motion.units import TURN
+
+_LONGEST = math.pi / 3.0  # of an element [rad]: short enough for the points chosen below
+_SHORTEST = 1e-9  # edges closer than this [rad] are the same edge, rounded
+_INSIDE = 1e-12  # how far within an element its terms are looked up, free of steps at its ends
+POINTS = 10
+"""Gauss points per element: order 20, which leaves rounding only."""
+
+
+class Element(NamedTuple):
+    """A stretch of the shaft angle [rad] without a step, and the piece of the cam it lies in."""
+
+    start: float
+    end: float
+    piece: int
+
+
+@dataclass(frozen=True)
+class CamDrive:
+    """
+    A cam shaft with everything that turns it and everything it moves.
+
+    The equation of motion J dw/dt + C w² = Q, with C = dJ/dq / 2, is d(J w²/2)/dq = Q(q, w).
+
+    Attributes
+    ----------
+    profile : CamProfile
+        Motion of the follower over the shaft angle [m].
+    parts : Sequence[Part]
+        The load.
+    motor : Motor
+        The motor.
+    gearbox : Gearbox
+        Between motor and cam shaft; its inertia counts at the cam shaft.
+    flywheel : float
+        Inertia of a flywheel on the motor shaft [kg m²]; not negative.
+    nominal_speed : float
+        Speed of the cam shaft that the drive is meant for [rad/s].
+
+    Raises
+    ------
+    ConfigurationError
+        When the flywheel or the speed is out of range.
+
+    """
+
+    profile: CamProfile
+    parts: Sequence[Part]
+    motor: Motor
+    gearbox: Gearbox
+    flywheel: float
+    nominal_speed: float
+
+    def __post_init__(self) -> None:
+        """Refuse figures that make no drive."""
+        problems = []
+        if not (math.isfinite(self.flywheel) and self.flywheel >= 0.0):
+            problems.append(Problem('flywheel', self.flywheel, 'must be at least 0 kg m²'))
+        if not (math.isfinite(self.nominal_speed) and self.nominal_speed > 0.0):
+            problems.append(Problem('nominal_speed', self.nominal_speed, 'must be above 0'))
+        if problems:
+            raise ConfigurationError(problems)
+
+    @property
+    def fixed_inertia(self) -> float:
+        """Sum the inertia of motor, flywheel and gearbox at the cam shaft [kg m²]."""
+        ratio = self.gearbox.ratio
+        return self.gearbox.inertia + (self.motor.inertia + self.flywheel) * ratio * ratio
+
+    @cached_property
+    def elements(self) -> tuple[Element, ...]:
+        """Split a turn at every joint of the cam and every edge of the load."""
+        return self.split_at(())
+
+    def split_at(self, cuts: Iterable[float]) -> tuple[Element, ...]:
+        """
+        Split a turn at joints, edges and further angles.
+
+        Parameters
+        ----------
+        cuts : Iterable[float]
+            Shaft angles within one turn [rad].
+
+        Returns
+        -------
+        tuple[Element, ...]
+            Elements from 0 to one turn, none longer than the Gauss points can serve.
+
+        """
+        curve = self.profile.curve
+        edges = {*curve.breaks, *cuts,
+                 *(edge % TURN for part in self.parts for edge in part.edges())}
+        ordered = sorted(edges)
+        merged = [0.0]
+        for x in ordered:
+            if merged[-1] + _SHORTEST < x < TURN - _SHORTEST:
+                merged.append(x)
+        merged.append(TURN)
+        found = []
+        for low, high in zip(merged, merged[1:]):
+            count = math.ceil((high - low) / _LONGEST)
+            cuts = [low + (high - low) * k / count for k in range(count)] + [high]
+            piece = max(0, bisect_right(curve.breaks, 0.5 * (low + high)) - 1)
+            found += [Element(a, b, piece) for a, b in zip(cuts, cuts[1:])]
+        return tuple(found)
+
+    def follower(self, element: Element, q: Array) -> Follower:
+        """
+        Give the follower within an element, its ends from inside.
+
+        Parameters
+        ----------
+        element : Element
+            The element.
+        q : ndarray
+            Shaft angles within it [rad].
+
+        Returns
+        -------
+        Follower
+            Where the follower is.
+
+        """
+        curve = self.profile.curve
+        piece = curve.pieces[element.piece]
+        u = q - curve.breaks[element.piece]
+        inside = np.clip(q, element.start + _INSIDE, element.end - _INSIDE)
+        slope = piece.derivative
+        return Follower(inside, piece(u), slope(u), slope.derivative(u))
+
+    def terms(self, at: Follower) -> Terms:
+        """
+        Sum the terms of the whole shaft, without the motor's torque.
+
+        Parameters
+        ----------
+        at : Follower
+            Where the follower is.
+
+        Returns
+        -------
+        Terms
+            J with all inertias, C, Q0 and Q1.
+
+        """
+        found = [part.terms(at) for part in self.parts]
+        return Terms(
+            self.fixed_inertia + sum((t.inertia for t in found), np.zeros_like(at.q)),
+            sum((t.centripetal for t in found), np.zeros_like(at.q)),
+            sum((t.force for t in found), np.zeros_like(at.q)),
+            sum((t.damping for t in found), np.zeros_like(at.q)))
+
+    def motor_torque(self, omega: Array) -> Array:
+        """
+        Give the motor's torque at the cam shaft.
+
+        Parameters
+        ----------
+        omega : ndarray
+            Speed of the cam shaft [rad/s].
+
+        Returns
+        -------
+        ndarray
+            Torque [N m].
+
+        """
+        speed = self.gearbox.ratio * omega
+        torque = self.motor.torque(speed)
+        return self.gearbox.gain(torque, speed) * torque
+
+    def motor_slope(self, omega: Array) -> Array:
+        """
+        Differentiate the motor's torque at the cam shaft with respect to its speed.
+
+        Parameters
+        ----------
+        omega : ndarray
+            Speed of the cam shaft [rad/s].
+
+        Returns
+        -------
+        ndarray
+            Slope [N m s/rad].
+
+        """
+        ratio = self.gearbox.ratio
+        speed = ratio * omega
+        gain = self.gearbox.gain(self.motor.torque(speed), speed)
+        return gain * ratio * self.motor.slope(speed)
+
+    def contact_force(self, at: Follower, omega: Array, alpha: Array, base: float) -> Array:
+        """
+        Give the force between cam and roller.
+
+        Parameters
+        ----------
+        at : Follower
+            Where the follower is.
+        omega, alpha : ndarray
+            Speed [rad/s] and acceleration [rad/s²] of the cam shaft.
+        base : float
+            Distance of the roller's centre from the cam shaft at s = 0 [m].
+
+        Returns
+        -------
+        ndarray
+            Force [N] along the common normal; negative where the follower would lift off.
+
+        """
+        along = sum((part.follower_force(at, omega, alpha) for part in self.parts),
+                    np.zeros_like(at.q))
+        return along * np.hypot(at.s1, base + at.s) / (base + at.s)

@@ -1,0 +1,211 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a check of a configuration finds: problems, peaks, and the highest speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io import parameters
+from cam_motion.io.machine import build_axis, build_machine, guess_line, Values
+from cam_motion.io.parameters import check_values
+from cam_motion.motion.diagram import Axis, TimingDiagram
+from cam_motion.motion.limits import QUANTITIES, SpeedBound
+from cam_motion.motion.piecewise import Peak
+from cam_motion.motion.profile import CamProfile
+from cam_motion.units import DEGREE, rate_text, RPM
+
+
+@dataclass(frozen=True)
+class SegmentSummary:
+    """
+    The figures of one segment.
+
+    Attributes
+    ----------
+    name, law : str
+        Names of the segment and of its law.
+    start_deg, end_deg : float
+        Shaft angles at which it starts and ends [deg].
+    lift : float
+        Change of position [unit].
+    geometric : tuple[Peak, Peak, Peak]
+        Signed peaks of y', y'', y''' [unit/rad, /rad², /rad³] and where they occur [rad].
+    physical : tuple[float, float, float]
+        The same as velocity, acceleration and jerk at the set speed [unit/s, /s², /s³].
+
+    """
+
+    name: str
+    law: str
+    start_deg: float
+    end_deg: float
+    lift: float
+    geometric: tuple[Peak, Peak, Peak]
+    physical: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class AxisSummary:
+    """
+    The figures of one axis.
+
+    Attributes
+    ----------
+    axis : Axis
+        The axis.
+    segments : tuple[SegmentSummary, ...]
+        Its segments in order.
+    bound : SpeedBound | None
+        The highest shaft speed within its limits; None where nothing limits it.
+
+    """
+
+    axis: Axis
+    segments: tuple[SegmentSummary, ...]
+    bound: SpeedBound | None
+
+
+@dataclass(frozen=True)
+class CheckSummary:
+    """
+    The outcome of a check.
+
+    Attributes
+    ----------
+    problems : tuple[Problem, ...]
+        Everything that is wrong.
+    speed_cpm : float | None
+        Shaft speed for which the physical figures hold [cycles/min]; None if it is unknown.
+    axes : Mapping[str, AxisSummary]
+        The axes that could be built, in the order of the line.
+
+    """
+
+    problems: tuple[Problem, ...]
+    speed_cpm: float | None
+    axes: Mapping[str, AxisSummary]
+
+    @property
+    def line_bound(self) -> tuple[str, SpeedBound] | None:
+        """The axis that holds the whole line back, and its bound; None where nothing does."""
+        return TimingDiagram({name: each.axis for name, each in self.axes.items()}).speed_bound()
+
+
+def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = None) -> CheckSummary:
+    """
+    Check a whole configuration, and report whatever of it can be built.
+
+    Parameters
+    ----------
+    sections : Mapping[str, Mapping[str, Any]]
+        Parameters of every node.
+    speed_cpm : float | None
+        Shaft speed to take instead of the configured one [cycles/min].
+
+    Returns
+    -------
+    CheckSummary
+        All problems, and the figures of every axis that is sound in itself.
+
+    """
+    if speed_cpm is not None:
+        sections = with_speed(sections, speed_cpm)
+    problems: tuple[Problem, ...] = ()
+    try:
+        build_machine(sections)
+    except ConfigurationError as error:
+        problems = error.problems
+    line = _line(sections)
+    master, _ = check_values(parameters.MASTER_SHAFT, sections.get(line['master'], {}))
+    axes = {}
+    for name in line['axes'] or guess_line(sections)['axes']:
+        try:
+            axes[name] = summarise_axis(
+                build_axis(name, sections.get(name, {})), master['speed_cpm'] * RPM)
+        except ConfigurationError:
+            continue  # its problems are among those above
+    return CheckSummary(problems, master['speed_cpm'], axes)
+
+
+def with_speed(sections: Mapping[str, Values], speed_cpm: float) -> dict[str, Values]:
+    """
+    Give a configuration another shaft speed.
+
+    Parameters
+    ----------
+    sections : Mapping[str, Mapping[str, Any]]
+        Parameters of every node.
+    speed_cpm : float
+        The speed [cycles/min].
+
+    Returns
+    -------
+    dict[str, Mapping[str, Any]]
+        The configuration, the set speed of its master replaced.
+
+    """
+    master = _line(sections)['master']
+    return {**sections, master: {**sections.get(master, {}), 'speed_cpm': speed_cpm}}
+
+
+def _line(sections: Mapping[str, Values]) -> dict[str, Any]:
+    line, _ = check_values(parameters.LINE, sections.get('line', guess_line(sections)))
+    return line
+
+
+def summarise_axis(axis: Axis, omega: float) -> AxisSummary:
+    """
+    Gather the figures of an axis.
+
+    Parameters
+    ----------
+    axis : Axis
+        The axis.
+    omega : float
+        Shaft speed for the physical figures [rad/s].
+
+    Returns
+    -------
+    AxisSummary
+        Its figures.
+
+    """
+    return AxisSummary(axis, tuple(_segments(axis.profile, omega)), axis.speed_bound)
+
+
+def _segments(profile: CamProfile, omega: float) -> list[SegmentSummary]:
+    found, start_deg = [], 0.0
+    for segment, _, velocity, acceleration, jerk in profile.segment_peaks:
+        found.append(SegmentSummary(
+            segment.name, segment.law.name, start_deg, segment.end_deg, segment.lift,
+            (velocity, acceleration, jerk),
+            (velocity.value * omega, acceleration.value * omega * omega,
+             jerk.value * omega * omega * omega)))
+        start_deg = segment.end_deg
+    return found
+
+
+def bound_text(bound: SpeedBound, unit: str) -> str:
+    """
+    Say what holds a shaft back.
+
+    Parameters
+    ----------
+    bound : SpeedBound
+        The bound.
+    unit : str
+        Unit of the axis' position.
+
+    Returns
+    -------
+    str
+        Segment, quantity, limit and angle: ``feed: acceleration 400 m/s² at 10 deg``.
+
+    """
+    rate = rate_text(unit, QUANTITIES.index(bound.quantity))
+    return (f'{bound.segment}: {bound.quantity} {bound.limit:g} {rate} '
+            f'at {bound.at / DEGREE:.6g} deg')

@@ -1,0 +1,84 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The outcome of a check as plain data, for JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cam_motion.errors import Problem
+from cam_motion.io.plain import finite, plain
+from cam_motion.io.summary import AxisSummary, bound_text, CheckSummary, SegmentSummary
+from cam_motion.motion.limits import QUANTITIES
+from cam_motion.units import DEGREE, RPM
+
+
+def check_as_data(check: CheckSummary) -> dict[str, Any]:
+    """
+    Turn the outcome of a check into plain data.
+
+    Parameters
+    ----------
+    check : CheckSummary
+        The outcome.
+
+    Returns
+    -------
+    dict[str, Any]
+        What ``cam_motion check --json`` prints; infinite figures are None.
+
+    """
+    line = check.line_bound
+    return {
+        'problems': [problem_as_data(problem) for problem in check.problems],
+        'speed_cpm': check.speed_cpm,
+        'line': {
+            'max_speed_cpm': finite(line[1].omega / RPM) if line else None,
+            'axis': line[0] if line else None,
+        },
+        'axes': {name: _axis_as_data(axis) for name, axis in check.axes.items()},
+    }
+
+
+def problem_as_data(problem: Problem) -> dict[str, Any]:
+    """
+    Turn a problem into plain data.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+
+    Returns
+    -------
+    dict[str, Any]
+        Its path, value, rule and hint.
+
+    """
+    return {'path': problem.path, 'value': plain(problem.value), 'rule': problem.rule,
+            'hint': problem.hint}
+
+
+def _axis_as_data(summary: AxisSummary) -> dict[str, Any]:
+    axis, bound = summary.axis, summary.bound
+    return {
+        'unit': axis.unit,
+        'max_speed_cpm': finite(bound.omega / RPM) if bound else None,
+        'limited_by': bound_text(bound, axis.unit) if bound else None,
+        'advance': axis.profile.advance,
+        'limits': {name: axis.limits.of_order(order)
+                   for order, name in enumerate(QUANTITIES[1:], start=1)},
+        'segments': [_segment_as_data(segment) for segment in summary.segments],
+    }
+
+
+def _segment_as_data(segment: SegmentSummary) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        'name': segment.name, 'law': segment.law, 'start_deg': segment.start_deg,
+        'end_deg': segment.end_deg, 'lift': segment.lift,
+    }
+    rows = list(zip(QUANTITIES[1:], segment.geometric, segment.physical))
+    data |= {f'peak_{name}': finite(physical) for name, _, physical in rows}
+    data |= {f'peak_{name}_deg': peak.at / DEGREE for name, peak, _ in rows}
+    data |= {f'geometric_{name}': finite(peak.value) for name, peak, _ in rows}
+    return data

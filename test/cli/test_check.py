@@ -1,0 +1,172 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verb ``check``: figures of document 001, every problem once, exit codes."""
+
+import math
+
+import pytest
+import yaml
+
+pytestmark = pytest.mark.timeout(60)
+
+ROUNDED_ON_THE_SLIDE = 5e-5  # document 001 rounds to the figures that are compared here
+
+BROKEN = {
+    'feeder.feed.end_deg': lambda tree: tree['feeder']['feed'].update(end_deg=-10.0),
+    'press.close.lift': lambda tree: tree['press']['close'].update(lift=float('nan')),
+    'press.close.law': lambda tree: tree['press']['close'].update(law='wobble'),
+    'knife.limits.velocity': lambda tree: tree['knife']['limits'].update(velocity=0.5),
+    'knife.limits.speed': lambda tree: tree['knife']['limits'].update(speed=1.0),
+    'master_shaft.speed_cpm': lambda tree: tree['master_shaft'].update(speed_cpm='fast'),
+    'master_shaft.rate_hz': lambda tree: tree['master_shaft'].update(rate_hz=float('inf')),
+    'feeder_drive.axis': lambda tree: tree['feeder_drive'].update(axis='feder'),
+    'line.axes': lambda tree: tree['line'].update(axes=['feeder', 'press', 'knife', 'feeder']),
+    'knife.cycle': lambda tree: tree['knife']['back'].update(lift=-0.07),
+}
+
+
+@pytest.fixture
+def broken(tmp_path, machine_file):
+    """Give a function that writes the machine file with some things broken."""
+    def write(*paths):
+        tree = yaml.safe_load(machine_file.read_text())
+        for path in paths:
+            BROKEN[path]({name: body['ros__parameters'] for name, body in tree.items()})
+        file = tmp_path / 'broken.yaml'
+        file.write_text(yaml.safe_dump(tree))
+        return file
+    return write
+
+
+def segment(data, axis, name):
+    """Find a segment in the JSON of a check."""
+    return next(s for s in data['axes'][axis]['segments'] if s['name'] == name)
+
+
+def test_cutting_machine_has_the_peaks_of_document_001(cam_motion, read_json, machine_file):
+    done = cam_motion('check', machine_file, '--json')
+    data = read_json(done.stdout)
+    feed = segment(data, 'feeder', 'feed')
+    assert (done.returncode, data['problems']) == (0, [])
+    assert feed['law'] == 'modified_trapezoid'
+    assert (feed['start_deg'], feed['end_deg'], feed['lift']) == (0.0, 80.0, 0.3)
+    assert feed['peak_velocity'] == pytest.approx(9.0, rel=1e-12)
+    assert feed['peak_acceleration'] == pytest.approx(329.95, rel=ROUNDED_ON_THE_SLIDE)
+    assert feed['peak_jerk'] == pytest.approx(
+        32.0 * math.pi ** 2 / (2.0 + math.pi) * 0.3 / (0.3 * 80.0 / 360.0) ** 3)
+    assert segment(data, 'press', 'open')['peak_velocity'] == pytest.approx(-16 / 15)
+    assert data['axes']['feeder']['advance'] == 0.3
+    assert data['axes']['press']['advance'] == 0.0
+
+
+def test_highest_speed_and_what_holds_it_back(cam_motion, read_json, machine_file):
+    data = read_json(cam_motion('check', machine_file, '--json').stdout)
+    feeder = data['axes']['feeder']
+    peak = segment(data, 'feeder', 'feed')['peak_acceleration']
+    assert feeder['max_speed_cpm'] == pytest.approx(200.0 * (400.0 / peak) ** 0.5, rel=1e-12)
+    assert feeder['limited_by'] == 'feed: acceleration 400 m/s² at 10 deg'
+    assert data['line'] == {'max_speed_cpm': feeder['max_speed_cpm'], 'axis': 'feeder'}
+
+
+def test_constant_acceleration_has_270_and_infinite_jerk(cam_motion, read_json, tmp_path):
+    file = tmp_path / 'slide.yaml'
+    file.write_text(
+        'master_shaft: {ros__parameters: {speed_cpm: 200.0}}\n'
+        'feeder: {ros__parameters: {cycle: accumulate, segments: [feed, wait], feed: {law: '
+        'constant_acceleration, end_deg: 80.0, lift: 0.3}, wait: {end_deg: 360.0}}}\n')
+    done = cam_motion('check', file, '--json')
+    data = read_json(done.stdout)
+    feed = segment(data, 'feeder', 'feed')
+    assert done.returncode == 0
+    assert feed['peak_velocity'] == pytest.approx(9.0, rel=1e-12)
+    assert feed['peak_acceleration'] == pytest.approx(270.0, rel=1e-12)
+    assert feed['peak_jerk'] is None
+    assert data['axes']['feeder']['max_speed_cpm'] is None
+    assert data['axes']['feeder']['limited_by'] is None
+    assert '∞' in cam_motion('check', file).stdout
+
+
+def test_another_speed_scales_the_peaks_and_can_break_limits(cam_motion, read_json, machine_file):
+    at_100 = read_json(cam_motion('check', machine_file, '--json', '--speed-cpm', 100).stdout)
+    assert segment(at_100, 'feeder', 'feed')['peak_velocity'] == pytest.approx(4.5, rel=1e-12)
+    backwards = read_json(cam_motion('check', machine_file, '--json', '--speed-cpm=-100').stdout)
+    assert segment(backwards, 'feeder', 'feed')['peak_velocity'] == pytest.approx(-4.5)
+    done = cam_motion('check', machine_file, '--speed-cpm', 225)
+    assert done.returncode == 2
+    assert 'feeder.limits.acceleration' in done.stderr
+    assert '! 417.59' in done.stdout
+
+
+def test_every_problem_is_reported_once_with_its_rule(cam_motion, read_json, broken):
+    file = broken(*BROKEN)
+    done = cam_motion('check', file, '--json')
+    problems = read_json(done.stdout)['problems']
+    paths = [problem['path'] for problem in problems]
+    assert done.returncode == 2
+    # whether a limit is kept cannot be judged: the speed is broken too
+    assert set(BROKEN) - {'knife.limits.velocity'} == set(paths)
+    assert len({(p['path'], p['rule']) for p in problems}) == len(problems)
+    assert all(p['rule'] for p in problems)
+
+
+@pytest.mark.parametrize('path', BROKEN)
+def test_a_single_problem_is_found_at_its_path(cam_motion, read_json, broken, path):
+    done = cam_motion('check', broken(path), '--json')
+    found = {problem['path'] for problem in read_json(done.stdout)['problems']}
+    assert (done.returncode, found) == (2, {path})
+
+
+def test_axes_that_can_be_built_are_reported_beside_problems(cam_motion, read_json, broken):
+    data = read_json(cam_motion('check', broken('feeder.feed.end_deg'), '--json').stdout)
+    assert list(data['axes']) == ['press', 'knife']
+
+
+def test_people_read_path_value_rule_and_way_out(cam_motion, broken):
+    done = cam_motion('check', broken('press.close.law'))
+    assert 'press.close.law' in done.stderr
+    assert "'wobble'" in done.stderr
+    assert 'a law must be one that is known' in done.stderr
+    assert 'modified_trapezoid' in done.stderr
+    assert '\x1b' not in done.stderr + done.stdout
+
+
+def test_tables_fit_a_narrow_terminal(cam_motion, machine_file):
+    done = cam_motion('check', machine_file, columns='80')
+    assert max(map(len, done.stdout.splitlines())) <= 80
+    assert 'modified_trapezoid' in done.stdout
+    assert '329.95' in done.stdout
+
+
+@pytest.mark.parametrize('content', [
+    None, b'', b'{', b'a: [1,', b'\x00\x01\x02\xff', b'just text', b'- 1\n- 2\n', b'line: 3\n',
+    b'line: {ros__parameters: {axes: 7}}\n', b'a: &a\n  ros__parameters: *a\n',
+    b'a: 2026-13-45\n', b'{[1]: 2}\n', b'\xef\xbb\xbf', b'a: !!python/object:os.system {}\n',
+    b'x: {ros__parameters: {segments: [a], a: {end_deg: ' + b'9' * 5000 + b'}}}\n',
+    b'x: {ros__parameters: {segments: [a], a: {end_deg: 1e308, lift: 1e308, law: cubic}}}\n',
+    b'[' * 2000,
+])
+def test_no_file_however_bad_makes_a_traceback(cam_motion, read_json, tmp_path, content):
+    file = tmp_path / 'bad.yaml'
+    if content is not None:
+        file.write_bytes(content)
+    for arguments in ([], ['--json']):
+        done = cam_motion('check', file, *arguments)
+        assert done.returncode == 2, done.stderr
+        assert 'Traceback' not in done.stderr
+    assert len(read_json(done.stdout)['problems']) >= 1
+
+
+def test_a_directory_is_one_clean_problem(cam_motion, tmp_path):
+    done = cam_motion('check', tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith('1 problem')
+
+
+@pytest.mark.parametrize('arguments', [
+    [], ['fly'], ['check'], ['check', 'x.yaml', '--speed-cpm', 'nan'], ['laws', '--colour'],
+    ['line', 'x.yaml', '--seconds', '-1'], ['record', 'x.yaml'],
+])
+def test_a_wrong_command_line_exits_with_2(cam_motion, arguments):
+    done = cam_motion(*arguments)
+    assert done.returncode == 2
+    assert 'usage:' in done.stderr

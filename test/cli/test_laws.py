@@ -1,0 +1,47 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verb ``laws``: every law of the registry, with the coefficients of the documents."""
+
+import math
+
+from cam_motion.motion.laws import LAWS
+import pytest
+
+pytestmark = pytest.mark.timeout(60)
+
+CONTRACT = {'name', 'cv', 'ca', 'cj', 'power', 'rms_acceleration'}
+
+
+def test_json_lists_every_law_once_with_the_keys_of_the_contract(cam_motion, read_json):
+    done = cam_motion('laws', '--json')
+    laws = read_json(done.stdout)
+    assert done.returncode == 0
+    assert [law['name'] for law in laws] == list(LAWS)
+    assert all(law.keys() >= CONTRACT | {'cj_inside', 'summary', 'source', 'parameters'}
+               for law in laws)
+
+
+def test_coefficients_are_those_of_the_documents(cam_motion, read_json):
+    laws = {law['name']: law for law in read_json(cam_motion('laws', '--json').stdout)}
+    assert laws['modified_trapezoid']['cv'] == pytest.approx(2.0, rel=1e-12)
+    assert laws['modified_trapezoid']['ca'] == pytest.approx(8 * math.pi / (2 + math.pi))
+    assert laws['modified_trapezoid']['cj'] == pytest.approx(32 * math.pi ** 2 / (2 + math.pi))
+    assert laws['cycloidal']['power'] == pytest.approx(1.5 * math.pi * math.sqrt(3.0))
+    assert (laws['constant_acceleration']['cv'], laws['constant_acceleration']['ca']) == (2, 4)
+    assert (laws['cubic']['cv'], laws['cubic']['ca'], laws['cubic']['cj_inside']) == (1.5, 6, 12)
+
+
+def test_infinite_coefficients_are_null(cam_motion, read_json):
+    laws = {law['name']: law for law in read_json(cam_motion('laws', '--json').stdout)}
+    assert laws['cubic']['cj'] is None
+    assert laws['constant_velocity']['ca'] is None
+    assert laws['constant_velocity']['rms_acceleration'] is None
+
+
+@pytest.mark.parametrize('columns', ['80', '120'])
+def test_table_shows_infinite_jerk_with_the_jerk_inside_in_brackets(cam_motion, columns):
+    done = cam_motion('laws', columns=columns)
+    cubic = next(line for line in done.stdout.splitlines() if line.split()[:1] == ['cubic'])
+    assert '∞ [12]' in cubic
+    assert max(map(len, done.stdout.splitlines())) <= int(columns)
+    assert all(law in done.stdout for law in LAWS)

@@ -1,0 +1,101 @@
+# Copyright 2026 The cam_motion authors
+# SPDX-License-Identifier: Apache-2.0
+"""The display of a running line, and children that do not behave."""
+
+from pathlib import Path
+
+from cam_motion.cli.child import Child, stop_signals
+from cam_motion.cli.live import Display, plain_line, render
+from cam_motion.cli.session import _recorded_topics
+from cam_motion.cli.watch import Snapshot
+from cam_motion.io.bag import BagWriter
+from cam_motion.io.config import load_machine
+import pytest
+from rich.console import Console
+
+pytestmark = pytest.mark.timeout(60)
+
+MACHINE = load_machine(Path(__file__).resolve().parents[2] / 'config' / 'cutting_machine.yaml')
+SEEN = Snapshot(
+    time=12.5, speed_cpm=200.0, phi=33.25 * 6.283185307179586,
+    axes={'feeder': (9.9, 3.25), 'press': (0.02, -0.0), 'knife': None},
+    drives={'feeder_drive': (-1466.6, 1282.04)},
+    health={'missed_ticks': '3', 'late_ticks': '17'})
+
+
+def test_a_plain_line_says_everything():
+    line = plain_line(MACHINE, SEEN)
+    for part in ('12.50 s', '200 cycles/min', 'cycle 33 at  90.0 deg',
+                 'feeder 9.9000 m 3.2500 m/s', 'press 0.0200 m 0.0000 m/s', 'knife - m - m/s',
+                 'feeder_drive -1466.6 N m 1282.0 rpm', 'ticks missed 3, late 17'):
+        assert part in line
+
+
+def test_the_table_fits_a_narrow_terminal():
+    console = Console(width=80, record=True, file=open('/dev/null', 'w', encoding='utf-8'))
+    with console.file:
+        console.print(render(MACHINE, SEEN, 'machine.yaml'))
+    text = console.export_text()
+    assert max(map(len, text.splitlines())) <= 80
+    for part in ('200.0', 'cycles/min', '90.0', '33', '3.2500', '-1466.6', 'missed 3'):
+        assert part in text
+
+
+def test_where_there_is_no_terminal_waiting_is_said_once_and_lines_come_slowly(capsys):
+    with Display(MACHINE, 'machine.yaml') as display:
+        for seen in (Snapshot(), Snapshot(), SEEN, SEEN, SEEN):
+            display.show(seen)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == ['waiting', '12.50']
+
+
+@pytest.fixture
+def module(tmp_path, monkeypatch):
+    """Give a function that makes a module to run as a child."""
+    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
+
+    def make(code):
+        (tmp_path / 'some_child.py').write_text(code)
+        return 'some_child'
+    return make
+
+
+def test_the_exit_code_and_the_lines_of_a_child_are_passed_on(module):
+    lines = []
+    child = Child(module('import sys; print("one", flush=True); sys.stderr.write("two\\n"); '
+                         'sys.exit(sys.argv[1] == "x" and 3)'), ['x'], lines.append)
+    assert child.end(20.0) == 3
+    assert lines == ['one', 'two']
+
+
+def test_a_child_that_does_not_stop_is_killed(module, capsys):
+    started = []
+    child = Child(module('import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN); '
+                         'print("ready", flush=True); time.sleep(60)'), [], started.append)
+    while not started and not child.ended:
+        pass
+    child.ask_to_stop()
+    assert child.end(0.3) == 1
+    assert child.ended
+    assert 'was killed' in capsys.readouterr().err
+
+
+def test_stop_signals_are_events_and_handlers_come_back():
+    import signal
+    before = signal.getsignal(signal.SIGTERM)
+    with stop_signals() as asked:
+        signal.raise_signal(signal.SIGTERM)
+        signal.raise_signal(signal.SIGINT)
+        assert asked.wait(1.0)
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_topics_with_messages_are_seen_in_a_bag_that_is_being_written(tmp_path):
+    assert _recorded_topics(tmp_path / 'bag') == set()
+    with BagWriter(tmp_path / 'bag') as writer:
+        full = writer.add_topic('/shaft', 'std_msgs/msg/String')
+        writer.add_topic('/feeder/setpoint', 'std_msgs/msg/String')
+        assert _recorded_topics(tmp_path / 'bag') == set()
+        writer.write(full, 1, b'\0\1\0\0\1\0\0\0\0')
+        writer.flush()
+        assert _recorded_topics(tmp_path / 'bag') == {'shaft'}
