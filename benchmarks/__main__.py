@@ -10,12 +10,11 @@
 import argparse
 import json
 
-from rich.console import Console
-from rich.table import Table
-
 from benchmarks.motion import motion_rows
 from benchmarks.nodes import node_rows
 from benchmarks.row import Row
+from rich.console import Console
+from rich.table import Table
 
 
 def main() -> None:

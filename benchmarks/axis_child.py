@@ -11,6 +11,7 @@ import json
 import sys
 import time
 
+from benchmarks.line_child import _CAM
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.executor import make_executor
 from cam_motion.nodes.qos import SETPOINTS
@@ -21,8 +22,6 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from trajectory_msgs.msg import JointTrajectoryPoint
-
-from benchmarks.line_child import _CAM
 
 _BURST = 10  # what the axis' own queue holds
 _BURSTS = 300

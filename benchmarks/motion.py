@@ -7,12 +7,11 @@
 # language governing permissions and limitations under the License.
 """The motion core beside scipy's PPoly."""
 
+from benchmarks.row import best_of, Row
 from cam_motion import CamProfile, segment
 from cam_motion.units import TURN
 import numpy as np
 from scipy.interpolate import PPoly
-
-from benchmarks.row import best_of, Row
 
 _CALLS = 20_000
 _POINTS = 1_000_000

@@ -14,9 +14,8 @@ import subprocess
 import sys
 from tempfile import TemporaryDirectory
 
-from cam_motion.nodes.executor import CHOICE
-
 from benchmarks.row import Row
+from cam_motion.nodes.executor import CHOICE
 
 _AXES = 8
 _RATE_HZ = 1000.0

@@ -16,8 +16,6 @@ from functools import cached_property
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from cam_motion.drive.gearbox import Gearbox
 from cam_motion.drive.load import Follower, Part, Terms
 from cam_motion.drive.motor import Motor
@@ -25,6 +23,7 @@ from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.piece import Array
 from cam_motion.motion.profile import CamProfile
 from cam_motion.units import TURN
+import numpy as np
 
 _LONGEST = math.pi / 3.0  # of an element [rad]: short enough for the points chosen below
 _SHORTEST = 1e-9  # edges closer than this [rad] are the same edge, rounded
@@ -193,7 +192,8 @@ class CamDrive:
         """
         speed = self.gearbox.ratio * omega
         torque = self.motor.torque(speed)
-        return self.gearbox.gain(torque, speed) * torque
+        found: Array = self.gearbox.gain(torque, speed) * torque
+        return found
 
     def motor_slope(self, omega: Array) -> Array:
         """
@@ -213,7 +213,8 @@ class CamDrive:
         ratio = self.gearbox.ratio
         speed = ratio * omega
         gain = self.gearbox.gain(self.motor.torque(speed), speed)
-        return gain * ratio * self.motor.slope(speed)
+        found: Array = gain * ratio * self.motor.slope(speed)
+        return found
 
     def contact_force(self, at: Follower, omega: Array, alpha: Array, base: float) -> Array:
         """

@@ -9,13 +9,12 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 from typing import NamedTuple
 
+from cam_motion.motion.piece import Array
 import numpy as np
 from numpy.polynomial import legendre
-
-from cam_motion.motion.piece import Array
 
 
 class GaussRule(NamedTuple):
@@ -46,7 +45,8 @@ class GaussRule(NamedTuple):
             Weights of the values at the points.
 
         """
-        return _integrals(np.asarray(x), self.points.size) @ _inverse(self.points.size)
+        row: Array = _integrals(np.asarray(x), self.points.size) @ _inverse(self.points.size)
+        return row
 
 
 def _integrals(x: Array, count: int) -> Array:
@@ -59,13 +59,14 @@ def _integrals(x: Array, count: int) -> Array:
     return rows
 
 
-@lru_cache(maxsize=None)
+@cache
 def _inverse(count: int) -> Array:
     points = legendre.leggauss(count)[0]
-    return np.linalg.inv(legendre.legvander(points, count - 1))
+    inverse: Array = np.linalg.inv(legendre.legvander(points, count - 1))
+    return inverse
 
 
-@lru_cache(maxsize=None)
+@cache
 def gauss_rule(count: int) -> GaussRule:
     """
     Make the rule with a number of points.
@@ -87,5 +88,6 @@ def gauss_rule(count: int) -> GaussRule:
 
     """
     x, w = legendre.leggauss(count)
-    points = 0.5 * (x + 1.0)
-    return GaussRule(points, 0.5 * w, _integrals(points, count) @ _inverse(count))
+    points = np.asarray(0.5 * (x + 1.0), dtype=np.float64)
+    matrix = _integrals(points, count) @ _inverse(count)
+    return GaussRule(points, np.asarray(0.5 * w, dtype=np.float64), matrix)

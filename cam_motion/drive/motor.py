@@ -94,8 +94,9 @@ class InductionMotor:
         if not problems:
             slip = polynomial.Polynomial([0.0, 1.0])
             below = slip + (self.breakdown_slip - slip) ** 2 * (self.a - self.b * slip ** 3)
-            poles = [r.real for r in below.roots() if abs(r.imag) < 1e-9 and -1.0 <= r.real <= 1.0]
-            if poles or self.a <= self.b:
+            roots = np.asarray(below.roots(), dtype=complex)
+            poles = (np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)
+            if poles.any() or self.a <= self.b:
                 problems.append(Problem(
                     'b', self.b, 'the torque curve must be finite from standstill to twice the '
                     'synchronous speed', f'with a = {self.a:g} take b below it'))

@@ -14,17 +14,17 @@ from dataclasses import dataclass
 from functools import cached_property
 import math
 
-import numpy as np
-from scipy.optimize import brentq, minimize_scalar
-
 from cam_motion.drive.cam_drive import CamDrive, Element, POINTS
 from cam_motion.drive.collocation import gauss_rule
 from cam_motion.errors import CamMotionError
 from cam_motion.motion.piece import Array
 from cam_motion.units import RPM
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
 
 _STEPS = 60
 _REFINEMENTS = 12
+_NO_TORQUE = 1e-9  # share of the torque in an element below which it counts as none
 _CONVERGED = 1e-13  # relative; what is left then is rounding
 _DENSE = 33  # points per element among which extremes are looked for before they are refined
 
@@ -90,7 +90,8 @@ class Orbit:
         span = element.end - element.start
         gained = span * (gauss_rule(POINTS).row((q - element.start) / span) @ self.powers[index])
         inertia = self.drive.terms(self.drive.follower(element, q)).inertia
-        return np.sqrt(2.0 * (self._energies[index] + gained) / inertia)
+        speed: Array = np.sqrt(2.0 * (self._energies[index] + gained) / inertia)
+        return speed
 
     def motion(self, index: int, q: Array) -> tuple[Array, Array]:
         """
@@ -171,13 +172,19 @@ class Orbit:
             return float(torque(ratio * self.omega(index, np.array([q]))[0]))
 
         found: list[float] = []
+        before = 0.0
         for index, element in enumerate(self.elements):
             q = np.linspace(element.start, element.end, _DENSE)
             values = torque(ratio * self.omega(index, q))
+            # an element may begin or end at such a place, where rounding decides on the sign
+            values[np.abs(values) < _NO_TORQUE * np.max(np.abs(values))] = 0.0
             for k in np.flatnonzero(values[:-1] * values[1:] < 0.0):
                 found.append(float(brentq(at, q[k], q[k + 1], args=(index,), xtol=1e-14)))
-        # an end of an element that is such a place already counts once
-        return [x for x, before in zip(found, [-1.0, *found]) if x - before > 1e-9]
+            signs = np.sign(values[values != 0.0])
+            if before * signs[0] < 0.0:
+                found.append(element.start)
+            before = signs[-1]
+        return sorted(found)
 
     def _extreme(self, function: Callable[[int, Array], Array], sign: float) -> float:
         """Find the least (sign 1) or greatest (sign -1) value over the revolution."""

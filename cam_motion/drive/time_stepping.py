@@ -9,14 +9,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-import numpy as np
-from scipy.integrate import solve_ivp
-
-from cam_motion.drive.cam_drive import CamDrive
+from cam_motion.drive.cam_drive import CamDrive, Element
 from cam_motion.motion.piece import Array
 from cam_motion.units import TURN
+import numpy as np
+from scipy.integrate import solve_ivp
 
 
 class TimeHistory(NamedTuple):
@@ -61,25 +60,32 @@ def step_in_time(drive: CamDrive, duration: float, omega: float = 0.0, rtol: flo
     while t < duration:
         element = drive.elements[index]
 
-        def rates(_: float, state: Array, element=element, turn=turn) -> list[float]:
+        def rates(_: float, state: Array, element: Element = element, turn: float = turn,
+                  ) -> list[float]:
             at = drive.follower(element, np.array([state[0] - turn]))
             terms = drive.terms(at)
             torque = terms.force + terms.damping * state[1] + drive.motor_torque(state[1:2])
-            return [state[1], float((torque - terms.centripetal * state[1] ** 2)[0]
-                                    / terms.inertia[0])]
+            alpha = (torque - terms.centripetal * state[1] ** 2) / terms.inertia
+            return [float(state[1]), float(alpha[0])]
 
-        def over(_: float, state: Array, end=element.end + turn) -> float:
+        def over(_: float, state: Array, end: float = element.end + turn) -> float:
             return float(state[0]) - end
 
         over.terminal, over.direction = True, 1.0  # type: ignore[attr-defined]
-        done = solve_ivp(rates, (t, duration), [q, omega], method='DOP853', rtol=rtol,
-                         atol=rtol, events=over)
+        options: dict[str, Any] = {'method': 'DOP853', 'rtol': rtol, 'atol': rtol}
+        done = solve_ivp(rates, (t, duration), [q, omega], events=over, **options)
+        if done.status == 1:
+            # the event comes from the interpolant, which is of lower order than the steps
+            done = solve_ivp(rates, (t, float(done.t[-1])), [q, omega], **options)
+            t, q, omega = float(done.t[-1]), *map(float, done.y[:, -1])
+            rest = (element.end + turn - q) / omega
+            alpha = rates(t, np.array([q, omega]))[1]
+            done.t[-1], done.y[:, -1] = t + rest, (element.end + turn, omega + alpha * rest)
         steps.append((done.t[1:], done.y[0, 1:], done.y[1, 1:]))
-        t, q, omega = float(done.t[-1]), float(done.y[0, -1]), float(done.y[1, -1])
-        if done.status != 1:
+        t, q, omega = float(done.t[-1]), *map(float, done.y[:, -1])
+        if t >= duration:
             break
         index += 1
-        q = element.end + turn
         if index == len(drive.elements):
             index, turn = 0, turn + TURN
             q = turn

@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """
 The parameters of every node as one table.
 
@@ -11,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-import math
+import sys
 from typing import Any
 
 from cam_motion.errors import Problem
@@ -19,6 +24,7 @@ from cam_motion.errors import Problem
 _KINDS: dict[str, tuple[type, ...]] = {
     'double': (float, int), 'integer': (int,), 'bool': (bool,), 'string': (str,),
 }
+_LARGEST = sys.float_info.max  # comparing, unlike isfinite, bears whole numbers of any length
 REQUIRED = object()
 """Default of a parameter that must be given."""
 
@@ -109,7 +115,7 @@ class ParameterSpec:
         if base not in ('double', 'integer'):
             return True
         return (
-            math.isfinite(item)
+            abs(item) <= _LARGEST
             and (self.above is None or item > self.above)
             and (self.least is None or item >= self.least)
             and (self.most is None or item <= self.most)

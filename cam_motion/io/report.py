@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """What a recorded run shows: ticks, axes against their exact curves, drives, findings."""
 
 from __future__ import annotations
@@ -166,7 +171,7 @@ def tick_figures(
 
 
 def _on_grid(shaft: Track, rate_hz: float) -> tuple[NDArray[np.int64], int]:
-    """Number the ticks, and count the points whose time is not that of their tick."""
+    """Give the ticks their numbers, and count the points whose time is not that of their tick."""
     ticks = np.rint(shaft.time_ns * 1e-9 * rate_hz).astype(np.int64)
     # the time of tick k is k / rate, rounded to the nanosecond
     return ticks, int(np.sum(np.abs(shaft.time_ns - ticks * (1e9 / rate_hz)) > 1.0))

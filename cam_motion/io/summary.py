@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """What a check of a configuration finds: problems, peaks, and the highest speed."""
 
 from __future__ import annotations
@@ -10,7 +15,8 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import parameters
-from cam_motion.io.machine import build_axis, build_machine, guess_line, Values
+from cam_motion.io.axis import build_axis, Values
+from cam_motion.io.machine import build_machine, guess_line
 from cam_motion.io.parameters import check_values
 from cam_motion.motion.diagram import Axis, TimingDiagram
 from cam_motion.motion.limits import QUANTITIES, SpeedBound
@@ -91,7 +97,7 @@ class CheckSummary:
 
     @property
     def line_bound(self) -> tuple[str, SpeedBound] | None:
-        """The axis that holds the whole line back, and its bound; None where nothing does."""
+        """Find the axis that holds the whole line back, and its bound; None where nothing does."""
         return TimingDiagram({name: each.axis for name, each in self.axes.items()}).speed_bound()
 
 

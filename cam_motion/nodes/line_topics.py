@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """The topics of a line, as its machine file implies them."""
 
 from __future__ import annotations
@@ -7,7 +12,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from cam_motion.io.machine import guess_line, Values
+from cam_motion.io.axis import Values
+from cam_motion.io.machine import guess_line
 from cam_motion.io.parameters import check_values, LINE
 from cam_motion.nodes.diagnostics import TOPIC as DIAGNOSTICS
 from cam_motion.nodes.qos import LATCHED, SETPOINTS

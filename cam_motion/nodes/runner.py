@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """Running nodes as a process: start, spin, stop on a signal, exit codes."""
 
 from __future__ import annotations
@@ -15,6 +20,7 @@ from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.nodes.executor import make_executor
 from cam_motion.nodes.managed_node import ManagedNode
 import rclpy
+from rclpy.duration import Duration
 from rclpy.executors import Executor
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
@@ -25,6 +31,7 @@ EXIT_CONFIGURATION = 2
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _STOP_WITHIN = 4.0  # launch sends SIGTERM 5 s after SIGINT
+_DELIVER_WITHIN = 1.0
 _SPIN = 0.1
 
 Factory = Callable[[], Sequence[ManagedNode]]
@@ -159,6 +166,12 @@ def bring_to_rest(executor: Executor, nodes: Sequence[ManagedNode]) -> None:
     for node in nodes:
         if node.active:
             node.trigger_deactivate()
+    # what has been published last must have arrived before its publisher is gone
+    deadline = time.monotonic() + _DELIVER_WITHIN
+    for publisher in (publisher for node in nodes for publisher in node.publishers):
+        left = deadline - time.monotonic()
+        if left > 0.0:
+            publisher.wait_for_all_acked(Duration(seconds=left))
 
 
 def print_problems(problems: Sequence[Problem]) -> None:

@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """Read an MCAP file that its recorder did not finish: all that stands before the cut."""
 
 from __future__ import annotations
@@ -125,7 +130,7 @@ class CutMcap:
         if opcode == Opcode.MESSAGE and len(content) >= _MESSAGE_HEAD.size:
             channel, _, time_ns, _ = _MESSAGE_HEAD.unpack_from(content)
             if channel in self.channels:
-                yield Message(channel, time_ns, content[_MESSAGE_HEAD.size :])
+                yield Message(channel, time_ns, content[_MESSAGE_HEAD.size:])
             return
         stream = ReadDataStream(BytesIO(content))
         try:
@@ -160,8 +165,8 @@ def _unpack(content: bytes) -> bytes:
         return b''
     *_, name_size = _CHUNK_HEAD.unpack_from(content)
     start = _CHUNK_HEAD.size + name_size
-    compression = content[_CHUNK_HEAD.size : start]
-    stored = content[start + 8 :]
+    compression = content[_CHUNK_HEAD.size:start]
+    stored = content[start + 8:]
     try:
         if compression == b'zstd':
             return zstandard.ZstdDecompressor().decompressobj().decompress(stored)

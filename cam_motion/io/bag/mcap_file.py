@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """
 An MCAP file that is whole after every step, however the process ends.
 
@@ -150,7 +155,7 @@ class McapFile:
             data_end = self.data_end + len(data)
             if data:
                 rest = filler(data_end, self._end - END_SIZE)
-                self._file.write(self.data_end + HEAD.size, memoryview(data)[HEAD.size :], rest)
+                self._file.write(self.data_end + HEAD.size, memoryview(data)[HEAD.size:], rest)
             self._write_slot(self._spare, statistics, metadata, self._end)
             self._file.settle()
             if data:
@@ -176,7 +181,7 @@ class McapFile:
         try:
             last = self._tail()
             self._make_room(len(last), self._capacity // 2)
-            self._file.write(self.data_end + HEAD.size, memoryview(last)[HEAD.size :])
+            self._file.write(self.data_end + HEAD.size, memoryview(last)[HEAD.size:])
             self._file.settle()
             self._file.write(self.data_end, last[: HEAD.size])
             self._file.cut(self.data_end + len(last))

@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """Serialised messages that differ in nothing but their numbers, decoded all at once."""
 
 from __future__ import annotations
@@ -46,7 +51,7 @@ class Layout:
         self.place += -self.place % 4
         start = _HEADER + self.place
         self.place += 4
-        return int.from_bytes(self._raw[start : start + 4], 'little')
+        return int.from_bytes(self._raw[start:start + 4], 'little')
 
     def time(self) -> None:
         """Step over seconds and nanoseconds."""
@@ -147,20 +152,20 @@ def read_uniform(raws: Sequence[bytes], walk: Callable[[bytes], Layout]) -> list
         return None
     table = np.frombuffer(b''.join(raws), dtype=np.uint8).reshape(len(raws), size)
     fixed = np.ones(size, dtype=bool)
-    fixed[layout.stamp : layout.stamp + 8] = False
+    fixed[layout.stamp:layout.stamp + 8] = False
     fixed[end:] = False
     for start, count in layout.sequences:
-        fixed[start : start + 8 * count] = False
+        fixed[start:start + 8 * count] = False
     # Padding may hold anything, but in practice is the same throughout.
     if (table[:, fixed] != table[0, fixed]).any():
         return None
     fields: list[Any] = [
-        np.ascontiguousarray(table[:, start : start + 8 * count]).view('<f8').astype(np.float64)
+        np.ascontiguousarray(table[:, start:start + 8 * count]).view('<f8').astype(np.float64)
         if count
         else np.empty((len(raws), 0))
         for start, count in layout.sequences
     ]
-    stamp = np.ascontiguousarray(table[:, layout.stamp : layout.stamp + 8])
+    stamp = np.ascontiguousarray(table[:, layout.stamp:layout.stamp + 8])
     seconds = stamp[:, :4].copy().view('<i4')[:, 0].astype(np.int64)
     fields.append(seconds * 10**9 + stamp[:, 4:].copy().view('<u4')[:, 0].astype(np.int64))
     return fields

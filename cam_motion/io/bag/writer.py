@@ -1,5 +1,10 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """Write a bag that can be read at any moment."""
 
 from __future__ import annotations
@@ -104,7 +109,7 @@ class BagWriter:
 
     @property
     def topics(self) -> dict[str, int]:
-        """Number of messages in the file per topic name, those that wait not included."""
+        """Count the messages in the file per topic name, those that wait not included."""
         return {topic.name: topic.count for topic in self._summary.topics}
 
     def add_topic(

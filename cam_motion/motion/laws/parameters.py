@@ -1,12 +1,16 @@
 # Copyright 2026 The cam_motion authors
-# SPDX-License-Identifier: Apache-2.0
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
 """Parameters of motion laws and the checks on them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-import math
 from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
@@ -70,7 +74,7 @@ class LawParameter:
             raise self.problem(value)
         for number in numbers:
             if isinstance(number, bool) or not isinstance(number, (int, float)) or not (
-                math.isfinite(number) and 0.0 <= number <= 1.0
+                0.0 <= number <= 1.0
             ):
                 raise self.problem(value)
         cleaned = tuple(float(number) for number in numbers)
