@@ -62,8 +62,8 @@ def _integrals(x: Array, count: int) -> Array:
 @cache
 def _inverse(count: int) -> Array:
     points = legendre.leggauss(count)[0]
-    inverse: Array = np.linalg.inv(legendre.legvander(points, count - 1))
-    return inverse
+    return np.asarray(
+        np.linalg.inv(legendre.legvander(points, count - 1)), dtype=np.float64)
 
 
 @cache
