@@ -216,6 +216,28 @@ class CamDrive:
         found: Array = gain * ratio * self.motor.slope(speed)
         return found
 
+    def acceleration(self, at: Follower, omega: Array) -> Array:
+        """
+        Give the acceleration of the cam shaft from the equation of motion.
+
+        Parameters
+        ----------
+        at : Follower
+            Where the follower is.
+        omega : ndarray
+            Speed of the cam shaft [rad/s].
+
+        Returns
+        -------
+        ndarray
+            Acceleration [rad/s²].
+
+        """
+        terms = self.terms(at)
+        torque = terms.force + terms.damping * omega + self.motor_torque(omega)
+        found: Array = (torque - terms.centripetal * omega ** 2) / terms.inertia
+        return found
+
     def contact_force(self, at: Follower, omega: Array, alpha: Array, base: float) -> Array:
         """
         Give the force between cam and roller.

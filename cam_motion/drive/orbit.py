@@ -9,24 +9,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-import math
 
 from cam_motion.drive.cam_drive import CamDrive, Element, POINTS
 from cam_motion.drive.collocation import gauss_rule
+from cam_motion.drive.stretch import least, Stretch
 from cam_motion.errors import CamMotionError
-from cam_motion.motion.piece import Array
 from cam_motion.units import RPM
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 _STEPS = 60
 _REFINEMENTS = 12
-_NO_TORQUE = 1e-9  # share of the torque in an element below which it counts as none
+_PLACED = 1e-8  # a cut misplaced by this [rad] changes the energy by its square only
 _CONVERGED = 1e-13  # relative; what is left then is rounding
-_DENSE = 33  # points per element among which extremes are looked for before they are refined
 
 
 class NoOrbitError(CamMotionError):
@@ -40,87 +36,30 @@ class Orbit:
 
     Attributes
     ----------
-    drive : CamDrive
-        The drive.
-    elements : tuple[Element, ...]
-        The revolution, split wherever something steps.
-    start_energy : float
-        Kinetic energy at q = 0 [J].
-    powers : ndarray, shape (elements, points)
-        Q(q, w), motor included, at the Gauss points of each element [N m].
+    stretches : tuple[Stretch, ...]
+        The revolution, split wherever something steps; its time begins at zero.
     multiplier : float
         By how much a disturbance of the energy is multiplied in one revolution [-].
-    period : float
-        Duration of the revolution [s].
 
     """
 
-    drive: CamDrive
-    elements: tuple[Element, ...]
-    start_energy: float
-    powers: Array
+    stretches: tuple[Stretch, ...]
     multiplier: float
-    period: float
 
-    @cached_property
-    def _energies(self) -> Array:
-        """Sum the kinetic energy at the beginning of each element, and at the end of the last."""
-        spans = np.array([e.end - e.start for e in self.elements])
-        gains = spans * (self.powers @ gauss_rule(POINTS).weights)
-        return self.start_energy + np.concatenate([[0.0], np.cumsum(gains)])
+    @property
+    def start_energy(self) -> float:
+        """Give the kinetic energy at q = 0 [J]."""
+        return self.stretches[0].energy
 
-    def omega(self, index: int, q: Array) -> Array:
-        """
-        Give the speed within an element.
-
-        Parameters
-        ----------
-        index : int
-            Number of the element.
-        q : ndarray, shape (n,)
-            Shaft angles within it [rad].
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Speed of the cam shaft [rad/s].
-
-        """
-        element = self.elements[index]
-        span = element.end - element.start
-        gained = span * (gauss_rule(POINTS).row((q - element.start) / span) @ self.powers[index])
-        inertia = self.drive.terms(self.drive.follower(element, q)).inertia
-        speed: Array = np.sqrt(2.0 * (self._energies[index] + gained) / inertia)
-        return speed
-
-    def motion(self, index: int, q: Array) -> tuple[Array, Array]:
-        """
-        Give speed and acceleration within an element, its ends from inside.
-
-        Parameters
-        ----------
-        index : int
-            Number of the element.
-        q : ndarray, shape (n,)
-            Shaft angles within it [rad].
-
-        Returns
-        -------
-        tuple[ndarray, ndarray]
-            Speed [rad/s] and acceleration [rad/s²] of the cam shaft.
-
-        """
-        drive = self.drive
-        omega = self.omega(index, q)
-        t = drive.terms(drive.follower(self.elements[index], q))
-        torque = t.force + t.damping * omega + drive.motor_torque(omega)
-        return omega, (torque - t.centripetal * omega ** 2) / t.inertia
+    @property
+    def period(self) -> float:
+        """Give the duration of the revolution [s]."""
+        return self.stretches[-1].time_at_end
 
     @cached_property
     def speeds(self) -> tuple[float, float]:
         """Find the least and the greatest speed of the cam shaft [rad/s]."""
-        return (self._extreme(lambda i, q: self.omega(i, q), 1.0),
-                self._extreme(lambda i, q: self.omega(i, q), -1.0))
+        return (least(self.stretches, Stretch.omega), least(self.stretches, Stretch.omega, -1.0))
 
     def least_contact_force(self, base: float) -> float:
         """
@@ -137,22 +76,18 @@ class Orbit:
             Force [N].
 
         """
-        def force(index: int, q: Array) -> Array:
-            at = self.drive.follower(self.elements[index], q)
-            return self.drive.contact_force(at, *self.motion(index, q), base)
-        return self._extreme(force, 1.0)
+        return least(self.stretches, lambda stretch, q: stretch.contact_force(q, base))
 
     @cached_property
     def motor_work(self) -> float:
         """Sum the work of the motor at its own shaft over one revolution [J]."""
-        rule = gauss_rule(POINTS)
         total = 0.0
-        for index, element in enumerate(self.elements):
-            span = element.end - element.start
-            speed = self.drive.gearbox.ratio * self.omega(
-                index, element.start + span * rule.points)
-            total += span * float(rule.weights @ self.drive.motor.torque(speed))
-        return total * self.drive.gearbox.ratio
+        for stretch in self.stretches:
+            rule, drive = gauss_rule(stretch.powers.size), stretch.drive
+            omega = stretch.omega(stretch.element.start + stretch.span * rule.points)
+            torque = drive.motor.torque(drive.gearbox.ratio * omega)
+            total += drive.gearbox.ratio * stretch.span * float(rule.weights @ torque)
+        return total
 
     def power_reversals(self) -> list[float]:
         """
@@ -164,43 +99,18 @@ class Orbit:
             Shaft angles within one turn [rad].
 
         """
-        if self.drive.gearbox.efficiency == 1.0:
-            return []
-        ratio, torque = self.drive.gearbox.ratio, self.drive.motor.torque
-
-        def at(q: float, index: int) -> float:
-            return float(torque(ratio * self.omega(index, np.array([q]))[0]))
-
         found: list[float] = []
         before = 0.0
-        for index, element in enumerate(self.elements):
-            q = np.linspace(element.start, element.end, _DENSE)
-            values = torque(ratio * self.omega(index, q))
-            # an element may begin or end at such a place, where rounding decides on the sign
-            values[np.abs(values) < _NO_TORQUE * np.max(np.abs(values))] = 0.0
-            for k in np.flatnonzero(values[:-1] * values[1:] < 0.0):
-                found.append(float(brentq(at, q[k], q[k + 1], args=(index,), xtol=1e-14)))
-            signs = np.sign(values[values != 0.0])
+        for stretch in self.stretches:
+            q, signs = stretch.motor_signs()
+            if not signs.size:
+                continue
             if before * signs[0] < 0.0:
-                found.append(element.start)
+                found.append(stretch.element.start)
+            found += [stretch.reversal_between(q[k], q[k + 1])
+                      for k in np.flatnonzero(signs[:-1] * signs[1:] < 0.0)]
             before = signs[-1]
         return sorted(found)
-
-    def _extreme(self, function: Callable[[int, Array], Array], sign: float) -> float:
-        """Find the least (sign 1) or greatest (sign -1) value over the revolution."""
-        best = math.inf
-        for index, element in enumerate(self.elements):
-            q = np.linspace(element.start, element.end, _DENSE)
-            values = sign * function(index, q)
-            low = int(np.argmin(values))
-            best = min(best, float(values[low]))
-            if 0 < low < _DENSE - 1 and values[low] <= best:
-                found = minimize_scalar(
-                    lambda x, index=index: sign * float(function(index, np.array([x]))[0]),
-                    bounds=(q[low - 1], q[low + 1]), method='bounded',
-                    options={'xatol': 1e-9})
-                best = min(best, float(found.fun))
-        return sign * best
 
 
 class _Revolution:
@@ -253,21 +163,25 @@ def find_orbit(drive: CamDrive) -> Orbit:
 
     """
     cuts: list[float] = []
-    orbit = _solve(drive, drive.elements)
+    orbit = _solve(drive, drive.elements, 0.5 * drive.nominal_speed ** 2)
+    if drive.gearbox.efficiency == 1.0:
+        return orbit
     for _ in range(_REFINEMENTS):
         reversals = orbit.power_reversals()
-        if len(reversals) == len(cuts) and np.allclose(reversals, cuts, rtol=0.0, atol=1e-12):
+        if len(reversals) == len(cuts) and np.allclose(reversals, cuts, rtol=0.0, atol=_PLACED):
             break
         cuts = reversals
-        orbit = _solve(drive, drive.split_at(cuts))
+        inertia = drive.terms(drive.follower(drive.elements[0], np.zeros(1))).inertia[0]
+        orbit = _solve(drive, drive.split_at(cuts), orbit.start_energy / inertia)
     return orbit
 
 
-def _solve(drive: CamDrive, elements: tuple[Element, ...]) -> Orbit:
+def _solve(drive: CamDrive, elements: tuple[Element, ...], half_square: float) -> Orbit:
+    """Solve with given elements, from a guess of w²/2."""
     table = _Revolution(drive, elements)
     count = table.weights.size
     system = np.zeros((count + 1, count + 1))
-    start = 0.5 * table.inertia * drive.nominal_speed ** 2
+    start = table.inertia * half_square
     state = np.append(start, start[0])
     eye = np.eye(count)
     step = np.inf
@@ -293,9 +207,14 @@ def _solve(drive: CamDrive, elements: tuple[Element, ...]) -> Orbit:
     multiplier = 1.0 + float((table.weights * slope) @ np.linalg.solve(inner, np.ones(count)))
     if not abs(multiplier) < 1.0:
         raise NoOrbitError(_why(drive, table))
-    return Orbit(
-        drive, elements, float(first), power.reshape(len(elements), POINTS), multiplier,
-        float(np.sum(table.weights / omega)))
+    stretches: list[Stretch] = []
+    at, time = float(first), 0.0
+    shape = (len(elements), POINTS)
+    for element, powers, slowness in zip(
+            elements, power.reshape(shape), (1.0 / omega).reshape(shape)):
+        stretches.append(Stretch(drive, element, time, at, powers, slowness))
+        at, time = stretches[-1].energy_at_end, stretches[-1].time_at_end
+    return Orbit(tuple(stretches), multiplier)
 
 
 def _why(drive: CamDrive, table: _Revolution) -> str:
@@ -309,5 +228,3 @@ def _why(drive: CamDrive, table: _Revolution) -> str:
         f'N m on average and up to {peak:.4g} N m, the motor gives up to {largest:.4g} N m at the '
         'cam shaft; take a stronger motor, a larger ratio or a larger flywheel')
 
-
-__all__ = ['Element', 'NoOrbitError', 'Orbit', 'find_orbit']

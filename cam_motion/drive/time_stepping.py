@@ -63,9 +63,7 @@ def step_in_time(drive: CamDrive, duration: float, omega: float = 0.0, rtol: flo
         def rates(_: float, state: Array, element: Element = element, turn: float = turn,
                   ) -> list[float]:
             at = drive.follower(element, np.array([state[0] - turn]))
-            terms = drive.terms(at)
-            torque = terms.force + terms.damping * state[1] + drive.motor_torque(state[1:2])
-            alpha = (torque - terms.centripetal * state[1] ** 2) / terms.inertia
+            alpha = drive.acceleration(at, state[1:2])
             return [float(state[1]), float(alpha[0])]
 
         def over(_: float, state: Array, end: float = element.end + turn) -> float:
