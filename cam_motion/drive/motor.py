@@ -23,6 +23,8 @@ class Motor(Protocol):
     """What a drive needs to know of its motor."""
 
     inertia: float
+    synchronous_speed: float
+    breakdown_slip: float
 
     def torque(self, speed: Any) -> Any:
         """Give the torque [N m] at a speed [rad/s], float or array."""

@@ -17,11 +17,15 @@ from cam_motion.drive.inverse import FollowerDrive
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import parameters
 from cam_motion.io.axis import build_axis, speed_problems, Values
+from cam_motion.io.cam_drive_config import build_cam_drive, CamDriveSettings
 from cam_motion.io.parameters import check_values
 from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.units import RPM
+
+LINE_SHAFT = 'line_shaft'
+"""Mode of a drive that turns a cam shaft, against one that follows an axis."""
 
 
 @dataclass(frozen=True)
@@ -97,13 +101,16 @@ class Machine:
     diagram : TimingDiagram
         The axes.
     drives : Mapping[str, DriveSettings]
-        The drives by name.
+        The drives that follow an axis, by name.
+    cam_drives : Mapping[str, CamDriveSettings]
+        The drives that turn a cam shaft, by name.
 
     """
 
     master: MasterSettings
     diagram: TimingDiagram
     drives: Mapping[str, DriveSettings]
+    cam_drives: Mapping[str, CamDriveSettings]
 
 
 def build_master(name: str, given: Values) -> MasterSettings:
@@ -215,11 +222,18 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
     else:
         master = build_master(line['master'], {})
     axes = {name: build(build_axis, name, 'axis') for name in dict.fromkeys(line['axes'])}
-    drives = {name: build(build_drive, name, 'drive') for name in dict.fromkeys(line['drives'])}
+    profiles = {name: axis.profile for name, axis in axes.items() if axis is not None}
+    drives, cam_drives = {}, {}
+    for name in dict.fromkeys(line['drives']):
+        if sections.get(name, {}).get('mode') == LINE_SHAFT:
+            cam_drives[name] = build(
+                lambda name, given: build_cam_drive(name, given, profiles), name, 'drive')
+        else:
+            drives[name] = build(build_drive, name, 'drive')
     problems += [
         Problem(f'{name}.axis', followed, 'a drive follows an axis of the line',
                 'known are: ' + ', '.join(axes))
-        for name in drives
+        for name in (*drives, *cam_drives)
         if isinstance(followed := sections.get(name, {}).get('axis'), str) and followed not in axes
     ]
     if master is not None:
@@ -227,7 +241,7 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
             problems += [] if axis is None else speed_problems(axis, master.speed)
     if problems:
         raise ConfigurationError(problems)
-    return Machine(master, TimingDiagram(axes), drives)
+    return Machine(master, TimingDiagram(axes), drives, cam_drives)
 
 
 def guess_line(sections: Mapping[str, Values]) -> Values:

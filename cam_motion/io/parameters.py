@@ -203,6 +203,8 @@ SEGMENT = (
 )
 
 DRIVE_SIM = (
+    ParameterSpec('mode', 'string', 'follow',
+                  'What the drive does: follow the setpoints of an axis.', choices=('follow',)),
     ParameterSpec('axis', 'string', REQUIRED, 'Name of the axis whose setpoints it follows.'),
     ParameterSpec('radius', 'double', 1.0,
                   'Travel of the axis per radian of the load shaft (roller radius); '

@@ -13,7 +13,8 @@ from collections.abc import Mapping
 import sys
 from typing import Any
 
-from cam_motion.io.machine import build_drive
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io.machine import build_drive, LINE_SHAFT
 from cam_motion.io.parameters import DRIVE_SIM
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.managed_node import ManagedNode
@@ -64,6 +65,10 @@ class DriveSim(ManagedNode):
             All parameters by flat name.
 
         """
+        if values.get('mode') == LINE_SHAFT:
+            raise ConfigurationError([Problem(
+                'mode', LINE_SHAFT, 'this node follows an axis, it does not turn the shaft yet',
+                'cam_motion simulate computes the drive')])
         settings = build_drive(self.get_name(), values)
         self._axis = settings.axis
         self._drive = settings.drive

@@ -1,0 +1,139 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""The verb ``simulate``: what the drives of a machine do and what it costs them."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from cam_motion.cli.options import add_config, add_json
+from cam_motion.cli.terminal import console, number, print_json, row, table
+from cam_motion.io.config import load_machine
+from cam_motion.io.plain import plain
+from cam_motion.io.simulation import simulate
+
+_LABELS = {
+    'peak_torque': ('peak motor torque', 'N m'), 'rms_torque': ('RMS motor torque', 'N m'),
+    'peak_speed_rpm': ('peak motor speed', 'rpm'),
+    'regenerated_energy_per_cycle': ('energy fed back per cycle', 'J'),
+    'motor_work_per_cycle': ('work of the motor per cycle', 'J'),
+    'inertia_ratio': ('inertia of the load to that of the motor', ''),
+    'fluctuation_pct': ('speed fluctuation', '%'), 'stability_pct': ('stability', '%'),
+    'running_cost_pct': ('running cost', '%'), 'period_s': ('period', 's'),
+    'min_speed_rpm': ('least speed', 'rpm'), 'max_speed_rpm': ('greatest speed', 'rpm'),
+    'min_contact_force': ('least contact force', 'N'),
+    'first_crossing_s': ('nominal speed first reached', 's'),
+    'settled_s': ('settled: it stays above', 's'),
+    'steady_state_time_s': ('nominal speed first reached', 's'),
+    'max_pressure_angle_deg': ('greatest pressure angle', 'deg'),
+    'max_torque_estimate': ('torque at constant speed', 'N m'),
+}
+_PARTS = {'orbit': 'periodic motion', 'start_up': 'start-up from rest',
+          'document': "document's definitions"}
+
+
+def add_to(verbs: Any) -> None:
+    """
+    Add the verb.
+
+    Parameters
+    ----------
+    verbs : argparse._SubParsersAction
+        The verbs.
+
+    """
+    parser = verbs.add_parser(
+        'simulate', help='simulate the drives of a machine',
+        description='Torque, speed and energy of every drive that follows an axis, at the set '
+                    'speed; periodic motion and start-up of every drive that turns a cam shaft, '
+                    'and the metrics of document 004 by its own definitions.')
+    add_config(parser)
+    parser.add_argument('--no-document', action='store_true',
+                        help="leave out the document's own Euler scheme, which takes seconds")
+    add_json(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """
+    Simulate and print.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed arguments.
+
+    Returns
+    -------
+    int
+        0; errors are raised.
+
+    """
+    machine = load_machine(arguments.config)
+    messages = console(stderr=True)
+    if messages.is_terminal and not arguments.json:
+        with messages.status('') as status:
+            results = simulate(machine, not arguments.no_document, status.update)
+    else:
+        results = simulate(machine, not arguments.no_document)
+    if arguments.json:
+        # a machine with one drive, as most that are sized, answers without its name
+        first = next(iter(results.values()), {})
+        print_json(plain({**first, 'drives': results}))
+        return 0
+    if not results:
+        console().print('the machine has no drives')
+    for name, result in results.items():
+        _print(name, result)
+    return 0
+
+
+def _print(name: str, result: dict[str, Any]) -> None:
+    parts = [key for key in _PARTS if key in result]
+    if not parts:
+        shown = table(name, [('one cycle', 'left'), ('', 'right'), ('', 'left')])
+        for key, value in result.items():
+            row(shown, _LABELS[key][0], _text(value), _LABELS[key][1])
+        console().print(shown)
+        return
+    shown = table(name, [('', 'left'), *((_PARTS[part], 'right') for part in parts),
+                         ('', 'left')])
+    # the document calls one figure by another name: what means the same shares a row
+    by_label = [{_LABELS[key]: value for key, value in result[part].items()} for part in parts]
+    for label in dict.fromkeys(label for column in by_label for label in column):
+        row(shown, label[0],
+            *(_text(column[label]) if label in column else '' for column in by_label), label[1])
+    console().print(shown)
+    if 'document' in parts:
+        console().print(_why_they_differ(result))
+
+
+def _text(value: float | None) -> str:
+    return '–' if value is None else number(value, 6)
+
+
+def _why_they_differ(result: dict[str, Any]) -> str:
+    """Say where the document's definitions hide something, with the figures."""
+    orbit, start, document = result['orbit'], result['start_up'], result['document']
+    said = ["The document's definitions and the motion itself differ:"]
+    if document['min_contact_force'] < orbit['min_contact_force'] * (1.0 - 1e-3):
+        said.append(
+            f'the least contact force {document["min_contact_force"]:.1f} N belongs to the '
+            f'start-up; in periodic motion it is {orbit["min_contact_force"]:.1f} N.')
+    if abs(document['fluctuation_pct'] - orbit['fluctuation_pct']) > 1e-3:
+        said.append(
+            f'the fluctuation {document["fluctuation_pct"]:.3f} % is read from one third of the '
+            'time on, which still holds the end of the start-up; the periodic motion has '
+            f'{orbit["fluctuation_pct"]:.3f} %.')
+    settled, first = start['settled_s'], start['first_crossing_s']
+    if settled is not None and first is not None and settled > first:
+        said.append(
+            f'the nominal speed is first reached at {first:.4f} s, but lost again until '
+            f'{settled:.4f} s.')
+    return ' '.join(said) if len(said) > 1 else 'Both sets of definitions agree here.'

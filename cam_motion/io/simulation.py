@@ -1,0 +1,118 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""What a machine's drives do, as data: cycles of drives that follow, motion of those that turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cam_motion.drive.cycle import cycle_figures
+from cam_motion.drive.document_004 import document_metrics
+from cam_motion.drive.orbit import find_orbit, Orbit
+from cam_motion.drive.start_up import start_up
+from cam_motion.io.cam_drive_config import CamDriveSettings
+from cam_motion.io.machine import DriveSettings, Machine
+from cam_motion.units import RPM
+
+_START_UP = 3.0  # how long the document lets its drive run [s]
+_BAND = 1e-3  # below the least speed of the orbit by this share the start-up is not over
+
+Progress = Callable[[str], None]
+
+
+def simulate(machine: Machine, document: bool = True, tell: Progress = lambda _: None,
+             ) -> dict[str, dict[str, Any]]:
+    """
+    Simulate every drive of a machine.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine; its axes turn at the set speed.
+    document : bool
+        Whether the metrics by document 004's own definitions and Euler scheme are computed
+        too, which takes a few seconds.
+    tell : Callable[[str], None]
+        Told what is being computed.
+
+    Returns
+    -------
+    dict[str, dict[str, Any]]
+        Results by drive; see README for the keys.
+
+    Raises
+    ------
+    NoOrbitError, StallError
+        When a motor cannot carry its load.
+
+    """
+    results: dict[str, dict[str, Any]] = {}
+    for name, settings in machine.drives.items():
+        tell(f'{name}: one cycle')
+        results[name] = _cycle(machine, settings)
+    for name, cam_drive in machine.cam_drives.items():
+        tell(f'{name}: periodic motion')
+        orbit = find_orbit(cam_drive.drive)
+        results[name] = {'orbit': _orbit(cam_drive, orbit)}
+        tell(f'{name}: start-up')
+        results[name]['start_up'] = _start_up(cam_drive, orbit)
+        if document:
+            tell(f"{name}: the document's own scheme")
+            results[name]['document'] = _document(cam_drive)
+    return results
+
+
+def _cycle(machine: Machine, settings: DriveSettings) -> dict[str, Any]:
+    profile = machine.diagram.axes[settings.axis].profile
+    figures = cycle_figures(settings.drive, profile, machine.master.speed)
+    return {
+        'peak_torque': figures.peak_torque, 'rms_torque': figures.rms_torque,
+        'peak_speed_rpm': figures.peak_speed / RPM,
+        'regenerated_energy_per_cycle': figures.regenerated_energy,
+        'motor_work_per_cycle': figures.motor_energy, 'inertia_ratio': figures.inertia_ratio,
+    }
+
+
+def _orbit(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
+    low, high = orbit.speeds
+    drive = settings.drive
+    ratio, motor = drive.gearbox.ratio, drive.motor
+    breakdown = motor.synchronous_speed * (1.0 - motor.breakdown_slip)
+    working = motor.synchronous_speed - breakdown
+    return {
+        'fluctuation_pct': 100.0 * (high - low) / drive.nominal_speed,
+        'stability_pct': 100.0 * (ratio * low - breakdown) / working,
+        'running_cost_pct':
+            100.0 * abs(0.5 * (low + high) * ratio - settings.rated_speed) / working,
+        'period_s': orbit.period, 'min_speed_rpm': low / RPM, 'max_speed_rpm': high / RPM,
+        'min_contact_force': orbit.least_contact_force(settings.base),
+        'motor_work_per_cycle': orbit.motor_work,
+    }
+
+
+def _start_up(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
+    drive = settings.drive
+    run = start_up(drive, _START_UP)
+    first = run.crossings(drive.nominal_speed)
+    # settled: up for the last time through the nominal speed, or through the least speed of
+    # the periodic motion where that dips below
+    band = min(drive.nominal_speed, orbit.speeds[0] * (1.0 - _BAND))
+    settled = run.crossings(band)
+    return {
+        'first_crossing_s': first[0] if first else None,
+        'settled_s': settled[-1] if settled else None,
+        'min_contact_force': run.least_contact_force(settings.base),
+    }
+
+
+def _document(settings: CamDriveSettings) -> dict[str, Any]:
+    metrics = document_metrics(settings.drive, settings.base)
+    return {name: getattr(metrics, name) for name in (
+        'steady_state_time_s', 'stability_pct', 'fluctuation_pct', 'running_cost_pct',
+        'min_contact_force', 'max_pressure_angle_deg', 'max_torque_estimate')}
