@@ -10,13 +10,30 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+import re
+from typing import Any, TYPE_CHECKING
 
 from cam_motion.cli.options import add_config, add_json
-from cam_motion.cli.terminal import console, number, print_json, row, table
+from cam_motion.cli.terminal import (
+    console,
+    number,
+    print_files,
+    print_json,
+    row,
+    save_figure,
+    table,
+)
+from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.config import load_machine
+from cam_motion.io.machine import Machine
 from cam_motion.io.plain import plain
-from cam_motion.io.simulation import simulate
+from cam_motion.io.simulation import simulate, START_UP
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _LABELS = {
     'peak_torque': ('peak motor torque', 'N m'), 'rms_torque': ('RMS motor torque', 'N m'),
@@ -54,6 +71,8 @@ def add_to(verbs: Any) -> None:
                     'speed; periodic motion and start-up of every drive that turns a cam shaft, '
                     'and the metrics of document 004 by its own definitions.')
     add_config(parser)
+    parser.add_argument('-o', '--output', metavar='DIR', type=Path,
+                        help='draw pictures of the drives into this directory')
     parser.add_argument('--no-document', action='store_true',
                         help="leave out the document's own Euler scheme, which takes seconds")
     add_json(parser)
@@ -79,19 +98,57 @@ def run(arguments: argparse.Namespace) -> int:
     messages = console(stderr=True)
     if messages.is_terminal and not arguments.json:
         with messages.status('') as status:
-            results = simulate(machine, not arguments.no_document, status.update)
+            results, files = _simulate(machine, arguments, status.update)
     else:
-        results = simulate(machine, not arguments.no_document)
+        results, files = _simulate(machine, arguments, lambda _: None)
     if arguments.json:
         # a machine with one drive, as most that are sized, answers without its name
         first = next(iter(results.values()), {})
-        print_json(plain({**first, 'drives': results}))
+        written = {} if arguments.output is None else {'files': [str(file) for file in files]}
+        print_json(plain({**first, 'drives': results, **written}))
         return 0
     if not results:
         console().print('the machine has no drives')
     for name, result in results.items():
         _print(name, result)
+    print_files(files)
     return 0
+
+
+def _simulate(machine: Machine, arguments: argparse.Namespace, tell: Callable[[str], None],
+              ) -> tuple[dict[str, dict[str, Any]], list[Path]]:
+    results = simulate(machine, not arguments.no_document, tell)
+    files = []
+    if arguments.output is not None:
+        for name, draw in _pictures(machine):
+            tell(f'drawing {name}')
+            file = re.sub(r'\W', '_', name) + '.png'
+            files.append(save_figure(draw(), arguments.output / file))
+    return results, files
+
+
+def _pictures(machine: Machine) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    """Give the pictures of all drives: name of the file and how to draw it."""
+    from cam_motion.drive.orbit import find_orbit
+    from cam_motion.drive.start_up import start_up
+    from cam_motion.io import plots
+    for name, follower in machine.drives.items():
+        curve = plots.torque_curve(
+            follower, machine.diagram.axes[follower.axis], machine.master.speed)
+        yield f'torque_{name}', partial(plots.torque_figure, name, [curve])
+    for name, drive in machine.cam_drives.items():
+        orbit, run = find_orbit(drive.drive), start_up(drive.drive, START_UP)
+        yield f'cam_{name}', partial(plots.cam_figure, drive)
+        yield f'load_{name}', partial(plots.load_figure, drive)
+        yield f'motor_{name}', partial(plots.motor_figure, drive, orbit)
+        yield f'start_up_{name}', partial(plots.start_up_figure, drive, orbit, run)
+        yield f'orbit_{name}', partial(plots.orbit_figure, drive, orbit)
+        yield f'flywheel_{name}', partial(_flywheel, drive)
+
+
+def _flywheel(drive: CamDriveSettings) -> Figure:
+    from cam_motion.io.plots import flywheel_curve, flywheel_figure
+    return flywheel_figure(drive, flywheel_curve(drive))
 
 
 def _print(name: str, result: dict[str, Any]) -> None:

@@ -22,7 +22,7 @@ from cam_motion.drive.motor import Motor
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.piece import Array
 from cam_motion.motion.profile import CamProfile
-from cam_motion.units import TURN
+from cam_motion.units import DEGREE, TURN
 import numpy as np
 
 _LONGEST = math.pi / 3.0  # of an element [rad]: short enough for the points chosen below
@@ -65,7 +65,8 @@ class CamDrive:
     Raises
     ------
     ConfigurationError
-        When the flywheel or the speed is out of range.
+        When the flywheel or the speed is out of range, the cam does not return, or the load is
+        not defined or has no inertia at some angle.
 
     """
 
@@ -83,8 +84,28 @@ class CamDrive:
             problems.append(Problem('flywheel', self.flywheel, 'must be at least 0 kg m²'))
         if not (math.isfinite(self.nominal_speed) and self.nominal_speed > 0.0):
             problems.append(Problem('nominal_speed', self.nominal_speed, 'must be above 0'))
+        if not problems:
+            problems = self._load_problems()
         if problems:
             raise ConfigurationError(problems)
+
+    def _load_problems(self) -> list[Problem]:
+        """Look whether the load is defined, and the shaft heavy, all the way round."""
+        if self.profile.advance:
+            return [Problem('axis', self.profile.advance, 'the cam of a drive must return: it '
+                            'gains this in each turn', 'write cycle: return')]
+        for element in self.elements:
+            with np.errstate(invalid='ignore', divide='ignore'):
+                terms = self.terms(self.follower(
+                    element, np.linspace(element.start, element.end, 9)))
+            where = f'{element.start / DEGREE:g} to {element.end / DEGREE:g} deg'
+            if not all(np.all(np.isfinite(term)) for term in terms):
+                return [Problem('load', where, 'the load must be defined at every shaft angle',
+                                'let no lever be drawn out of its reach')]
+            if not np.all(terms.inertia > 0.0):
+                return [Problem('load', where, 'the inertia must be above 0 at every angle',
+                                'give no part a negative inertia or mass')]
+        return []
 
     @property
     def fixed_inertia(self) -> float:

@@ -17,7 +17,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
+from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.piece import Array
+from cam_motion.units import TURN
 import numpy as np
 
 GRAVITY = 9.81
@@ -165,6 +167,13 @@ class Lever:
     height: float
     moment: float = 0.0
     window: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a window that is none."""
+        first, last = self.window
+        if not 0.0 <= first <= last <= TURN * (1.0 + 1e-12):
+            raise ConfigurationError([Problem(
+                'window', self.window, 'must be two rising angles within one turn')])
 
     def ratios(self, at: Follower) -> tuple[Array, Array, Array]:
         """

@@ -98,10 +98,11 @@ class InductionMotor:
             below = slip + (self.breakdown_slip - slip) ** 2 * (self.a - self.b * slip ** 3)
             roots = np.asarray(below.roots(), dtype=complex)
             poles = (np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)
-            if poles.any() or self.a <= self.b:
-                problems.append(Problem(
-                    'b', self.b, 'the torque curve must be finite from standstill to twice the '
-                    'synchronous speed', f'with a = {self.a:g} take b below it'))
+            rule = 'the torque curve must be finite from standstill to twice the synchronous speed'
+            if self.a <= self.b:
+                problems.append(Problem('b', self.b, rule, f'with a = {self.a:g} take b below it'))
+            elif poles.any():
+                problems.append(Problem('a', self.a, rule, 'take a larger a'))
         if problems:
             raise ConfigurationError(problems)
 

@@ -21,6 +21,7 @@ import numpy as np
 
 _STEPS = 60
 _REFINEMENTS = 12
+_RUNAWAY = 1e4  # times the energy at nominal speed: no motor is meant for that
 _PLACED = 1e-8  # a cut misplaced by this [rad] changes the energy by its square only
 _CONVERGED = 1e-13  # relative; what is left then is rounding
 
@@ -196,6 +197,8 @@ def _solve(drive: CamDrive, elements: tuple[Element, ...], half_square: float) -
         system[:-1, :-1], system[:-1, -1] = inner, -1.0
         system[-1, :-1] = table.weights * slope
         residual = np.append(energy - first - table.matrix @ power, table.weights @ power)
+        if not np.all(np.isfinite(system)) or np.max(energy) > _RUNAWAY * np.max(start):
+            raise NoOrbitError(_why(drive, table))
         change = np.linalg.solve(system, -residual)
         # never below a tenth of the energy there is: the speed must stay positive
         falling = float(np.max(-change / state))
@@ -227,4 +230,3 @@ def _why(drive: CamDrive, table: _Revolution) -> str:
         f'no periodic motion near {drive.nominal_speed / RPM:g} rpm: the load takes {needed:.4g} '
         f'N m on average and up to {peak:.4g} N m, the motor gives up to {largest:.4g} N m at the '
         'cam shaft; take a stronger motor, a larger ratio or a larger flywheel')
-

@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from cam_motion.drive.cam_drive import CamDrive, Element
+from cam_motion.drive.start_up import StallError
 from cam_motion.motion.piece import Array
 from cam_motion.units import TURN
 import numpy as np
@@ -47,6 +48,11 @@ def step_in_time(drive: CamDrive, duration: float, omega: float = 0.0, rtol: flo
     TimeHistory
         The steps of the integrator; elements begin and end on one.
 
+    Raises
+    ------
+    StallError
+        When the shaft comes to a stop.
+
     Notes
     -----
     Runge-Kutta of order 8 (DOP853). Stopping at the end of each element keeps its order, which
@@ -69,9 +75,16 @@ def step_in_time(drive: CamDrive, duration: float, omega: float = 0.0, rtol: flo
         def over(_: float, state: Array, end: float = element.end + turn) -> float:
             return float(state[0]) - end
 
+        def stalls(_: float, state: Array) -> float:
+            return float(state[1])
+
         over.terminal, over.direction = True, 1.0  # type: ignore[attr-defined]
+        stalls.terminal, stalls.direction = True, -1.0  # type: ignore[attr-defined]
         options: dict[str, Any] = {'method': 'DOP853', 'rtol': rtol, 'atol': rtol}
-        done = solve_ivp(rates, (t, duration), [q, omega], events=over, **options)
+        done = solve_ivp(rates, (t, duration), [q, omega], events=(over, stalls), **options)
+        if done.status == 1 and done.t_events[1].size:
+            raise StallError(f'the shaft comes to a stop after {float(done.t[-1]):.4g} s at '
+                             f'{float(done.y[0, -1]):.4g} rad: the motor cannot carry the load')
         if done.status == 1:
             # the event comes from the interpolant, which is of lower order than the steps
             done = solve_ivp(rates, (t, float(done.t[-1])), [q, omega], **options)

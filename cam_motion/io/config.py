@@ -54,7 +54,7 @@ _Loader.add_constructor(
     yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping_without_duplicates)
 
 
-def read_sections(path: str | Path) -> dict[str, Values]:
+def read_sections(path: str | Path, any_namespace: bool = True) -> dict[str, Values]:
     """
     Read a ROS 2 parameter file.
 
@@ -62,6 +62,8 @@ def read_sections(path: str | Path) -> dict[str, Values]:
     ----------
     path : str | Path
         The file.
+    any_namespace : bool
+        Whether sections that name a namespace count too.
 
     Returns
     -------
@@ -81,10 +83,11 @@ def read_sections(path: str | Path) -> dict[str, Values]:
         raise ConfigurationError([Problem(
             str(path), None, f'cannot be read: {reason}', 'give the path of a machine file'
         )]) from error
-    return parse_sections(text, str(path))
+    return parse_sections(text, str(path), any_namespace)
 
 
-def parse_sections(text: str, source: str = 'configuration') -> dict[str, Values]:
+def parse_sections(text: str, source: str = 'configuration', any_namespace: bool = True,
+                   ) -> dict[str, Values]:
     """
     Parse the text of a ROS 2 parameter file.
 
@@ -94,6 +97,8 @@ def parse_sections(text: str, source: str = 'configuration') -> dict[str, Values
         YAML.
     source : str
         What to call it in errors.
+    any_namespace : bool
+        Whether sections that name a namespace count too.
 
     Returns
     -------
@@ -130,7 +135,7 @@ def parse_sections(text: str, source: str = 'configuration') -> dict[str, Values
         flat = _flatten(below)
         if key == _EVERY_NODE:
             shared = flat
-        else:
+        elif any_namespace or '/' not in key.removeprefix('/'):
             sections.setdefault(key.rsplit('/', 1)[-1], {}).update(flat)
     problems += [
         Problem(f'{name}.{key}', str(value)[:40],

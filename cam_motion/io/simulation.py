@@ -14,13 +14,16 @@ from typing import Any
 
 from cam_motion.drive.cycle import cycle_figures
 from cam_motion.drive.document_004 import document_metrics
-from cam_motion.drive.orbit import find_orbit, Orbit
-from cam_motion.drive.start_up import start_up
+from cam_motion.drive.orbit import find_orbit, NoOrbitError, Orbit
+from cam_motion.drive.start_up import StallError, start_up, StartUp
 from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.machine import DriveSettings, Machine
 from cam_motion.units import RPM
+import numpy as np
 
-_START_UP = 3.0  # how long the document lets its drive run [s]
+START_UP = 3.0
+"""How long a start-up is followed, as the document does [s]."""
+
 _BAND = 1e-3  # below the least speed of the orbit by this share the start-up is not over
 
 Progress = Callable[[str], None]
@@ -57,11 +60,18 @@ def simulate(machine: Machine, document: bool = True, tell: Progress = lambda _:
         tell(f'{name}: one cycle')
         results[name] = _cycle(machine, settings)
     for name, cam_drive in machine.cam_drives.items():
-        tell(f'{name}: periodic motion')
-        orbit = find_orbit(cam_drive.drive)
-        results[name] = {'orbit': _orbit(cam_drive, orbit)}
-        tell(f'{name}: start-up')
-        results[name]['start_up'] = _start_up(cam_drive, orbit)
+        try:
+            tell(f'{name}: periodic motion')
+            # on the way to finding that there is none, the search may leave all numbers behind
+            with np.errstate(all='ignore'):
+                orbit = find_orbit(cam_drive.drive)
+            results[name] = {'orbit': orbit_figures(cam_drive, orbit)}
+            tell(f'{name}: start-up')
+            with np.errstate(all='ignore'):
+                run = start_up(cam_drive.drive, START_UP)
+        except (NoOrbitError, StallError) as error:
+            raise type(error)(f'{name}: {error}') from error
+        results[name]['start_up'] = start_up_figures(cam_drive, orbit, run)
         if document:
             tell(f"{name}: the document's own scheme")
             results[name]['document'] = _document(cam_drive)
@@ -79,7 +89,23 @@ def _cycle(machine: Machine, settings: DriveSettings) -> dict[str, Any]:
     }
 
 
-def _orbit(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
+def orbit_figures(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
+    """
+    Give the figures of a periodic motion.
+
+    Parameters
+    ----------
+    settings : CamDriveSettings
+        The drive.
+    orbit : Orbit
+        Its periodic motion.
+
+    Returns
+    -------
+    dict[str, Any]
+        See README for the keys.
+
+    """
     low, high = orbit.speeds
     drive = settings.drive
     ratio, motor = drive.gearbox.ratio, drive.motor
@@ -96,9 +122,26 @@ def _orbit(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
     }
 
 
-def _start_up(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
+def start_up_figures(settings: CamDriveSettings, orbit: Orbit, run: StartUp) -> dict[str, Any]:
+    """
+    Give the figures of a start-up.
+
+    Parameters
+    ----------
+    settings : CamDriveSettings
+        The drive.
+    orbit : Orbit
+        Its periodic motion.
+    run : StartUp
+        Its start-up.
+
+    Returns
+    -------
+    dict[str, Any]
+        See README for the keys.
+
+    """
     drive = settings.drive
-    run = start_up(drive, _START_UP)
     first = run.crossings(drive.nominal_speed)
     # settled: up for the last time through the nominal speed, or through the least speed of
     # the periodic motion where that dips below

@@ -151,7 +151,7 @@ class BagRecorder(ManagedNode):
         if point is not None:
             self._watch.note(point)
         # a machine that goes on was not asked to stop: only the recording was
-        return self._watch.goes_on(now)
+        return not self._watch.at_rest and self._watch.goes_on(now)
 
     def _look_for_topics(self) -> None:
         """Subscribe to what has appeared since."""

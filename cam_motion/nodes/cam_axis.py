@@ -17,7 +17,7 @@ from cam_motion.io.axis import build_axis
 from cam_motion.io.parameters import CAM_AXIS
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.qos import overridable, SETPOINTS
+from cam_motion.nodes.qos import SETPOINTS
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.shaft_watch import ShaftWatch
 from cam_motion.nodes.wire import pack_point, Point, unpack_point
@@ -56,7 +56,6 @@ class CamAxis(ManagedNode):
         """Called with every setpoint: drives of the same process."""
         self._own_process = own_process
         self._setpoints: Publisher | None = None
-        self._subscription = None
 
     def configure(self, values: dict[str, Any]) -> None:
         """
@@ -82,21 +81,15 @@ class CamAxis(ManagedNode):
         self._refused = 0
         self._coast: ShaftMotion | None = None
         self._coast_timer: Timer | None = None
-        self._setpoints = self.create_lifecycle_publisher(
-            JointTrajectoryPoint, '~/setpoint', SETPOINTS, qos_overriding_options=overridable())
+        self._setpoints = self.make_publisher(JointTrajectoryPoint, '~/setpoint', SETPOINTS)
         if self._own_process:
-            self._subscription = self.create_subscription(
-                JointTrajectoryPoint, 'shaft', self._on_shaft, SETPOINTS, raw=True,
-                qos_overriding_options=overridable())
+            self.make_subscription(
+                JointTrajectoryPoint, 'shaft', self._on_shaft, SETPOINTS, raw=True)
 
     def cleanup(self) -> None:
         """Drop the topics."""
-        if self._setpoints is not None:
-            self.destroy_lifecycle_publisher(self._setpoints)
-            self._setpoints = None
-        if self._subscription is not None:
-            self.destroy_subscription(self._subscription)
-            self._subscription = None
+        super().cleanup()
+        self._setpoints = None
 
     def activate(self) -> None:
         """Wait for the shaft."""

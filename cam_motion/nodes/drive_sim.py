@@ -18,7 +18,7 @@ from cam_motion.io.machine import build_drive, LINE_SHAFT
 from cam_motion.io.parameters import DRIVE_SIM
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.qos import overridable, SETPOINTS
+from cam_motion.nodes.qos import SETPOINTS
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.wire import JointStateCodec, Point, unpack_point
 from cam_motion.runtime.ticks import NANOSECONDS
@@ -53,7 +53,6 @@ class DriveSim(ManagedNode):
         super().__init__(name, **options)
         self._own_process = own_process
         self._states: Publisher | None = None
-        self._subscription = None
 
     def configure(self, values: dict[str, Any]) -> None:
         """
@@ -77,21 +76,16 @@ class DriveSim(ManagedNode):
         self._answered = 0
         self._refused = 0
         self._peak_torque = 0.0
-        self._states = self.create_lifecycle_publisher(
-            JointState, '~/drive_state', SETPOINTS, qos_overriding_options=overridable())
+        self._states = self.make_publisher(JointState, '~/drive_state', SETPOINTS)
         if self._own_process:
-            self._subscription = self.create_subscription(
+            self.make_subscription(
                 JointTrajectoryPoint, f'{self._axis}/setpoint', self._on_setpoint, SETPOINTS,
-                raw=True, qos_overriding_options=overridable())
+                raw=True)
 
     def cleanup(self) -> None:
         """Drop the topics."""
-        if self._states is not None:
-            self.destroy_lifecycle_publisher(self._states)
-            self._states = None
-        if self._subscription is not None:
-            self.destroy_subscription(self._subscription)
-            self._subscription = None
+        super().cleanup()
+        self._states = None
 
     def activate(self) -> None:
         """Wait for setpoints."""
@@ -111,7 +105,7 @@ class DriveSim(ManagedNode):
         if not self.active:
             return
         time_ns = setpoint.sec * NANOSECONDS + setpoint.nanosec
-        if self._epoch_ns is None:
+        if self._epoch_ns is None or self._clock_started_over(time_ns):
             self._epoch_ns = self.get_clock().now().nanoseconds - time_ns
             self.set_state('following')
         state = self._drive.follow(setpoint.position, setpoint.velocity, setpoint.acceleration)
@@ -123,6 +117,12 @@ class DriveSim(ManagedNode):
             (state.motor_position, state.load_position),
             (state.motor_velocity, state.load_velocity),
             (state.motor_torque, state.load_torque)))
+
+    def _clock_started_over(self, time_ns: int) -> bool:
+        """Tell whether /clock has jumped back: the machine's time base goes on, stamps do not."""
+        if not self.sim_time:
+            return False
+        return self.get_clock().now().nanoseconds < self._epoch_ns + time_ns - NANOSECONDS
 
     def _on_setpoint(self, data: bytes) -> None:
         setpoint = unpack_point(data)

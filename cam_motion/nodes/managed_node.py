@@ -17,13 +17,15 @@ from typing import Any, ClassVar
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.parameters import is_of_every_node, ParameterSpec
 from cam_motion.nodes import diagnostics
-from cam_motion.nodes.parameters import declare, take_from_any_namespace, values_of
+from cam_motion.nodes.parameters import declare, declare_given, take_from_any_namespace, values_of
 from cam_motion.nodes.qos import LATCHED, overridable
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
 from std_msgs.msg import String
 
 STATE = '~/state'
@@ -52,17 +54,18 @@ class ManagedNode(LifecycleNode):
 
     def __init__(self, name: str, **options: Any) -> None:
         """Declare the parameters; everything else waits for the configuration."""
-        super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
+        super().__init__(name, **options)
+        declare_given(self)
         self.problems: tuple[Problem, ...] = ()
         self.failed = False
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.active = False
         self._configured = False
         self._state_text = ''
+        self._made: list[Callable[[], object]] = []  # how to undo what `configure` has made
         take_from_any_namespace(self)
         declare(self, self.TABLE)
-        self._state = self.create_publisher(
-            String, STATE, LATCHED, qos_overriding_options=overridable())
+        self._state = self.create_publisher(String, STATE, **overridable(LATCHED))
         self._diagnostics = self.create_publisher(DiagnosticArray, diagnostics.TOPIC, 10)
         self._diagnostics_timer = self.create_timer(
             diagnostics.PERIOD, self._report, clock=self.steady_clock)
@@ -94,7 +97,72 @@ class ManagedNode(LifecycleNode):
         """Cease to work, leaving a hold setpoint behind."""
 
     def cleanup(self) -> None:
-        """Drop what `configure` made; must bear being called after half of it."""
+        """Drop what `configure` has made, be it only half of it."""
+        while self._made:
+            self._made.pop()()
+
+    def make_publisher(self, kind: type, topic: str, profile: QoSProfile) -> Publisher:
+        """
+        Make a publisher that lives until the cleanup.
+
+        Parameters
+        ----------
+        kind : type
+            Message type.
+        topic : str
+            Name of the topic.
+        profile : QoSProfile
+            Its policies, which parameters can override.
+
+        Returns
+        -------
+        Publisher
+            The publisher; it publishes while the node is active.
+
+        """
+        made = self.create_lifecycle_publisher(kind, topic, **overridable(profile))
+        self._made.append(lambda: self.destroy_lifecycle_publisher(made))
+        return made
+
+    def make_subscription(self, kind: type, topic: str, callback: Callable[[Any], None],
+                          profile: QoSProfile, raw: bool = False) -> None:
+        """
+        Make a subscription that lives until the cleanup.
+
+        Parameters
+        ----------
+        kind : type
+            Message type.
+        topic : str
+            Name of the topic.
+        callback : Callable[[Any], None]
+            Takes each message, or its bytes.
+        profile : QoSProfile
+            Its policies, which parameters can override.
+        raw : bool
+            Whether messages come as bytes.
+
+        """
+        made = self.create_subscription(
+            kind, topic, callback=callback, raw=raw, **overridable(profile))
+        self._made.append(lambda: self.destroy_subscription(made))
+
+    def make_service(self, kind: type, name: str, callback: Callable[[Any, Any], Any]) -> None:
+        """
+        Make a service that lives until the cleanup.
+
+        Parameters
+        ----------
+        kind : type
+            Service type.
+        name : str
+            Name of the service.
+        callback : Callable[[Any, Any], Any]
+            Fills in the response.
+
+        """
+        made = self.create_service(kind, name, callback)
+        self._made.append(lambda: self.destroy_service(made))
 
     def begin_stop(self) -> None:
         """Begin to come to rest, because the process has been asked to end."""

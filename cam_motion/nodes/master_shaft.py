@@ -17,13 +17,12 @@ from cam_motion.io.machine import build_master
 from cam_motion.io.parameters import MASTER_SHAFT
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.qos import overridable, SETPOINTS
+from cam_motion.nodes.qos import SETPOINTS
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.wire import JointStateCodec, pack_point, Point
 from cam_motion.runtime.shaft import Shaft, ShaftError, ShaftMode
 from cam_motion.runtime.ticks import NANOSECONDS, TickSchedule
 from cam_motion.units import RPM, TURN
-from rclpy.publisher import Publisher
 from rclpy.timer import Timer
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
@@ -85,42 +84,30 @@ class MasterShaft(ManagedNode):
         hz = checked['joint_states_hz']
         self._ticks_per_state = max(1, round(checked['rate_hz'] / hz)) if hz else 0
         self._codec = JointStateCodec([self.get_name()], with_effort=False)
-        self._points: Publisher = self.create_lifecycle_publisher(
-            JointTrajectoryPoint, SHAFT, SETPOINTS, qos_overriding_options=overridable())
-        self._joint_states: Publisher = self.create_lifecycle_publisher(
-            JointState, 'joint_states', SETPOINTS, qos_overriding_options=overridable())
-        self._entities = [
-            self.create_service(SetBool, '~/run', self._on_run),
-            self.create_service(Trigger, '~/stop_at_cycle_end', self._command(
-                lambda shaft, t: shaft.stop_at_cycle_end(t), 'stops at the end of a cycle')),
-            self.create_service(Trigger, '~/quick_stop', self._command(
-                lambda shaft, t: shaft.quick_stop(t), 'stops quickly')),
-            self.create_service(Trigger, '~/reset', self._command(
-                lambda shaft, t: shaft.reset(t), 'is ready to run')),
-        ]
-        self._speed = self.create_subscription(
-            Float64, '~/speed_cpm', lambda message: self._set_speed(message.data), 10,
-            qos_overriding_options=overridable())
+        self._points = self.make_publisher(JointTrajectoryPoint, SHAFT, SETPOINTS)
+        self._joint_states = self.make_publisher(JointState, 'joint_states', SETPOINTS)
+        self.make_subscription(
+            Float64, '~/speed_cpm', lambda message: self._set_speed(message.data), SETPOINTS)
+        self.make_service(SetBool, '~/run', self._on_run)
+        for name, done in (('stop_at_cycle_end', 'stops at the end of a cycle'),
+                           ('quick_stop', 'stops quickly'), ('reset', 'is ready to run')):
+            self.make_service(Trigger, f'~/{name}', self._command(name, done))
         self._timer = self.create_timer(
             1.0 / checked['rate_hz'], self._on_timer, clock=self.tick_clock, autostart=False)
 
     def cleanup(self) -> None:
         """Drop topics, services and the timer."""
-        if self._timer is None:
-            return
-        self.destroy_timer(self._timer)
-        self._timer = None
-        self.destroy_lifecycle_publisher(self._points)
-        self.destroy_lifecycle_publisher(self._joint_states)
-        self.destroy_subscription(self._speed)
-        for service in self._entities:
-            self.destroy_service(service)
+        super().cleanup()
+        if self._timer is not None:
+            self.destroy_timer(self._timer)
+            self._timer = None
 
     def activate(self) -> None:
         """Begin to tick; the shaft stands for a moment so that everything finds each other."""
         self._schedule.resume()
         self._epoch_ns = None
-        if self._start_delay is not None:
+        quick = self._shaft.mode(self._now) is ShaftMode.QUICK_STOPPED
+        if self._start_delay is not None and not quick:
             self._run_at = self._now + self._start_delay
         self._timer.reset()
         self.set_state(self._shaft.mode(self._now).value)
@@ -194,7 +181,13 @@ class MasterShaft(ManagedNode):
             now_ns -= overdue
             self._epoch_ns = (self.get_clock().now().nanoseconds - overdue
                               - self._schedule.time_ns(self._schedule.next_tick))
-        for tick in self._schedule.due(now_ns):
+        restarts = self._schedule.restarts
+        due = self._schedule.due(now_ns)
+        if self._schedule.restarts != restarts:
+            # the clock has started over: stamps go with it, the time base goes on
+            self._epoch_ns = (self.get_clock().now().nanoseconds
+                              - self._schedule.time_ns(due.start))
+        for tick in due:
             self._tick(self._schedule.time_ns(tick))
 
     def _tick(self, time_ns: int) -> None:
@@ -226,12 +219,12 @@ class MasterShaft(ManagedNode):
 
     def _on_run(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data:
-            command = self._command(lambda shaft, t: shaft.run(t), 'runs')
+            command = self._command('run', 'runs')
         else:
-            command = self._command(lambda shaft, t: shaft.stop(t), 'stops')
+            command = self._command('stop', 'stops')
         return command(request, response)
 
-    def _command(self, act: Callable[[Shaft, float], None], done: str) -> Callable[..., Any]:
+    def _command(self, name: str, done: str) -> Callable[..., Any]:
         """Make a service callback from a command of the shaft."""
         def callback(request: Any, response: Any) -> Any:
             response.success = False
@@ -240,7 +233,7 @@ class MasterShaft(ManagedNode):
                 return response
             self._run_at = None
             try:
-                act(self._shaft, self._now)
+                getattr(self._shaft, name)(self._now)
             except ShaftError as error:
                 response.message = str(error)
                 return response

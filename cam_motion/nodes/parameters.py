@@ -35,13 +35,33 @@ def machine_files() -> list[str]:
     return [value for flag, value in zip(sys.argv, sys.argv[1:]) if flag == '--params-file']
 
 
+def declare_given(node: Node) -> None:
+    """
+    Declare whatever a node has been given, known or not.
+
+    rclpy's own ``automatically_declare_parameters_from_overrides`` ends the process over an empty
+    list, which has no type in a parameter file; here it counts as not given.
+
+    Parameters
+    ----------
+    node : Node
+        The node.
+
+    """
+    for name, parameter in node._parameter_overrides.items():
+        if parameter.value is not None and not node.has_parameter(name):
+            node.declare_parameter(
+                name, parameter.value, ParameterDescriptor(dynamic_typing=parameter.value == []),
+                ignore_override=True)
+
+
 def take_from_any_namespace(node: Node) -> None:
     """
     Give a node in a namespace the parameters of the section that bears its bare name.
 
     To ROS a section ``feeder`` means the node ``/feeder`` alone. A machine file is meant for
-    the line wherever a namespace places it, so its sections apply there too; what ROS has given
-    the node already stands.
+    the line wherever a namespace places it, so its sections apply there too, those that name
+    another namespace apart; what ROS has given the node already stands.
 
     Parameters
     ----------
@@ -54,7 +74,8 @@ def take_from_any_namespace(node: Node) -> None:
     given: Mapping[str, Any] = {}
     for path in machine_files():
         try:
-            given = {**given, **read_sections(path).get(node.get_name(), {})}
+            sections = read_sections(path, any_namespace=False)
+            given = {**given, **sections.get(node.get_name(), {})}
         except ConfigurationError:
             continue  # ROS has read it as it could; the offline check says what is wrong
     for name, value in given.items():
@@ -68,9 +89,9 @@ def declare(node: Node, table: Iterable[ParameterSpec]) -> None:
     """
     Declare the parameters of a table on a node, keeping what was given.
 
-    The node must have been made with ``automatically_declare_parameters_from_overrides``, so
-    that everything given is known, names that the table does not know included. Values of a
-    wrong type stay as they were given, for the validation to report all problems at once.
+    Everything given must have been declared before, see `declare_given`, names that the table
+    does not know included. Values of a wrong type stay as they were given, for the validation to
+    report all problems at once.
 
     Parameters
     ----------

@@ -9,6 +9,9 @@
 
 from __future__ import annotations
 
+from copy import copy
+from typing import Any
+
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
@@ -23,14 +26,23 @@ LATCHED = QoSProfile(
 """State that late joiners need."""
 
 
-def overridable() -> QoSOverridingOptions:
+def overridable(profile: QoSProfile) -> dict[str, Any]:
     """
-    Let users override the policies the ROS way, by parameters.
+    Let users override the policies of a topic the ROS way, by parameters.
+
+    Parameters
+    ----------
+    profile : QoSProfile
+        Policies where nobody overrides them.
 
     Returns
     -------
-    QoSOverridingOptions
-        Options for a publisher or subscription.
+    dict[str, Any]
+        Arguments of `create_publisher` or `create_subscription`. The profile is a copy: rclpy
+        writes the overrides into the one it is given.
 
     """
-    return QoSOverridingOptions.with_default_policies()
+    return {
+        'qos_profile': copy(profile),
+        'qos_overriding_options': QoSOverridingOptions.with_default_policies(),
+    }

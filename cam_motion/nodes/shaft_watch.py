@@ -33,6 +33,8 @@ class ShaftWatch:
         self.last: Point | None = None
         self.period = _DEFAULT_PERIOD
         self._stop_from: float | None = None
+        self._looked_at: Point | None = None  # the last point when it was asked for last
+        self._silent_from = 0.0
 
     def note(self, point: Point) -> None:
         """
@@ -79,9 +81,14 @@ class ShaftWatch:
         Returns
         -------
         bool
-            True when it turns, is not slowing down, and the time of grace is over.
+            True when it turns, the time of grace is over, and it is not slowing down or has
+            fallen silent. Not to be asked of a shaft `at_rest`.
 
         """
         if self.last is None or self._stop_from is None or now < self._stop_from + _GRACE:
             return False
+        if self.last is not self._looked_at:
+            self._looked_at, self._silent_from = self.last, now
+        if now - self._silent_from > _GRACE:
+            return True  # silent while it turned: whoever waited for it would wait for ever
         return self.last.velocity * self.last.acceleration >= 0.0

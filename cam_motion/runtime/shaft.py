@@ -248,7 +248,10 @@ class Shaft:
             The shaft.
 
         """
-        return Shaft(self.speed, self.limits, self.quick_limits, phi)
+        still = Shaft(self.speed, self.limits, self.quick_limits, phi)
+        if self._mode is ShaftMode.QUICK_STOPPING:
+            still._mode = self._mode  # to be acknowledged all the same
+        return still
 
     def _ramp(self, t: float, target: float, limits: RampLimits) -> None:
         self._motion = self._motion.ramped(t, target, limits)

@@ -50,7 +50,6 @@ DOMAINS = (*range(1, 101), *range(215, 231))  # whose ports no system hands out 
 PATIENCE = 30.0  # s
 CPU_SECONDS = 60  # that a process may use before it is killed
 DEEP = QoSProfile(depth=20000)
-
 _counter = itertools.count()
 
 
@@ -188,7 +187,8 @@ class Process:
     """A node in a process of its own."""
 
     def __init__(self, domain, folder, module, arguments):
-        self.files = [open(folder / f'{next(_counter)}_{module}.{end}', 'w+') for end in ('out', 'err')]
+        stem = f'{next(_counter)}_{module}'
+        self.files = [open(folder / f'{stem}.{end}', 'w') for end in ('out', 'err')]
         self.popen = subprocess.Popen(
             [sys.executable, '-m', f'cam_motion.nodes.{module}', '--ros-args',
              *map(str, arguments)],
@@ -207,17 +207,17 @@ class Process:
 
     @property
     def running(self):
-        """Whether it is still running."""
+        """Tell whether it is still running."""
         return self.popen.poll() is None
 
     @property
     def said(self):
-        """What it has written so far, both streams."""
+        """Return what it has written so far, both streams."""
         return ''.join(Path(file.name).read_text(errors='replace') for file in self.files)
 
     @property
     def complained(self):
-        """What it has written to its standard error."""
+        """Return what it has written to its standard error."""
         return Path(self.files[1].name).read_text(errors='replace')
 
     def close(self):
@@ -231,7 +231,7 @@ class Process:
 
 @pytest.fixture
 def start(domain, tmp_path):
-    """Start nodes as processes: `start('line', '--params-file', path)`."""
+    """Start nodes as processes: name of the module, then arguments behind --ros-args."""
     processes = []
 
     def start(module, *arguments):

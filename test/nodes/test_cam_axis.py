@@ -10,7 +10,7 @@
 import math
 
 from builtin_interfaces.msg import Duration
-from cam_motion.io.machine import build_axis
+from cam_motion.io.axis import build_axis
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.qos import SETPOINTS
 from cam_motion.nodes.wire import pack_point, Point
@@ -204,8 +204,6 @@ def test_the_quality_of_service_of_the_setpoints_can_be_overridden(world):
         SETPOINTS.depth, SETPOINTS.reliability = before
 
 
-@pytest.mark.xfail(strict=True, reason=(
-    'rclpy writes overrides into the profile it is given, here the one all topics share'))
 def test_an_override_of_one_topic_leaves_the_others_alone(world):
     before = SETPOINTS.depth, SETPOINTS.reliability
     try:

@@ -10,7 +10,7 @@
 from itertools import pairwise
 import math
 
-from cam_motion.io.machine import build_axis
+from cam_motion.io.axis import build_axis
 from cam_motion.nodes.drive_sim import DriveSim
 from cam_motion.nodes.wire import pack_point, Point
 from cam_motion.units import RPM

@@ -161,8 +161,6 @@ def test_nothing_is_left_behind_by_configuring_again_and_again(world, factory, g
     assert held == held[:1] * 4
 
 
-@pytest.mark.xfail(strict=True, reason=(
-    'MasterShaft.cleanup does nothing before the timer exists, the last thing configure makes'))
 def test_nothing_is_left_behind_by_a_configuration_that_breaks_half_way(world, monkeypatch):
     node = world.make(MasterShaft)
     before = entities(node)

@@ -190,8 +190,6 @@ TWO_LINES = """
 """
 
 
-@pytest.mark.xfail(strict=True, reason=(
-    'a node in a namespace also takes parameters of its namesake in another namespace'))
 def test_one_file_may_hold_a_line_for_each_of_two_namespaces(line_in, tmp_path):
     path = tmp_path / 'two_lines.yaml'
     path.write_text(TWO_LINES)
@@ -201,8 +199,6 @@ def test_one_file_may_hold_a_line_for_each_of_two_namespaces(line_in, tmp_path):
         assert nodes['belt'].axis.profile.advance == pytest.approx(advance, rel=1e-12)
 
 
-@pytest.mark.xfail(strict=True, reason=(
-    'an empty list in a parameter file has no type, and rclpy refuses to declare it'))
 def test_an_empty_list_of_drives_may_be_written_out(line, machine_file, tmp_path):
     nodes = line(config=edited(
         machine_file, tmp_path, ('drives: [feeder_drive]', 'drives: []')))

@@ -48,7 +48,8 @@ def activated(world, node):
 
 def describe(world, node, name):
     """Describe a parameter as `ros2 param describe` does."""
-    return world.call(DescribeParameters, f'{node}/describe_parameters', names=[name]).descriptors[0]
+    answer = world.call(DescribeParameters, f'{node}/describe_parameters', names=[name])
+    return answer.descriptors[0]
 
 
 def test_every_parameter_is_described_with_its_unit_and_rule(world):

@@ -13,10 +13,13 @@ import time
 
 from cam_motion.io.bag import BagReader, read_joint_states, read_points
 from cam_motion.io.config import load_machine
+from cam_motion.nodes.bag_recorder import BagRecorder
+from cam_motion.nodes.wire import pack_point
 from diagnostic_msgs.msg import DiagnosticArray
 from mcap.reader import make_reader
 import pytest
 from rosbags.rosbag2 import Reader
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow, pytest.mark.timeout(240)]
 
@@ -52,7 +55,7 @@ def heard(world):
 
 def test_a_recorder_beside_a_line(world, start, machine_file, tmp_path, heard):
     shaft = world.points('shaft')
-    line = start('line', '--params-file', machine_file, '-p', 'rate_hz:=200.0')
+    line = start('line', '--params-file', machine_file, '-p', 'master_shaft:rate_hz:=200.0')
 
     def recorder(name):
         return start('bag_recorder', '--params-file', machine_file,
@@ -81,6 +84,27 @@ def test_a_recorder_beside_a_line(world, start, machine_file, tmp_path, heard):
     assert world.spin_until(lambda: not (last.running or line.running))
     assert (last.exit_code(), line.exit_code()) == (0, 0), last.said + line.said
     check_stopped_bag(tmp_path / 'stopped', machine_file)
+
+
+def test_a_recorder_told_to_stop_waits_while_a_resting_machine_still_speaks(world, tmp_path):
+    node = world.make(BagRecorder, {'output': str(tmp_path / 'bag'), 'topics': ['shaft']})
+    node.trigger_configure()
+    shaft = world.probe.create_publisher(JointTrajectoryPoint, 'shaft', 10)
+    node.trigger_activate()
+    assert world.spin_until(lambda: shaft.get_subscription_count() > 0)
+    shaft.publish(pack_point(1.0, 5.0, -30.0, 0, 0))
+    assert world.spin_until(lambda: node._last_shaft is not None)
+    node.begin_stop()
+    # slowing down, then at rest: the answers to the last points may still be on their way
+    for step in range(1, 12):
+        speed = max(0.0, 5.0 - step)
+        shaft.publish(pack_point(1.0, speed, -30.0 if speed else 0.0, step, 0))
+        world.spin_for(0.05)
+        assert not node.stopped
+    assert world.spin_until(lambda: node.stopped)
+    node.trigger_deactivate()
+    with BagReader(tmp_path / 'bag') as reader:
+        assert read_points(reader, '/shaft').velocities[-1, 0] == 0.0
 
 
 def contents(folder):

@@ -135,8 +135,7 @@ def check_stop_on_curve(profile, shaft, setpoints):
 
 @pytest.mark.parametrize('alpha', [
     0.0, 20.0,
-    pytest.param(-20.0, marks=pytest.mark.xfail(strict=True, reason=(
-        'a master that has fallen silent while slowing down is waited for in vain'))),
+    -20.0,
 ], ids=['steady', 'speeding up', 'slowing down'])
 def test_an_axis_whose_master_has_died_stops_on_its_own_curve(world, tmp_path, alpha):
     path = tmp_path / 'belt.yaml'

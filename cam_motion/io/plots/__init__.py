@@ -7,13 +7,18 @@
 # language governing permissions and limitations under the License.
 """Pictures, one concept per file; every function returns a Figure and touches no global state."""
 
+from cam_motion.io.plots.cam_drive import cam_figure, load_figure
+from cam_motion.io.plots.cam_drive_motion import orbit_figure, start_up_figure
 from cam_motion.io.plots.diagram import timing_diagram
+from cam_motion.io.plots.flywheel import flywheel_curve, flywheel_figure
+from cam_motion.io.plots.motor import motor_figure
 from cam_motion.io.plots.profile import profile_figure
 from cam_motion.io.plots.recorded import recorded_figure, recorded_torque_figure, shaft_figure
 from cam_motion.io.plots.style import FORMATS, save
 from cam_motion.io.plots.torque import torque_curve, torque_figure
 
 __all__ = [
-    'FORMATS', 'profile_figure', 'recorded_figure', 'recorded_torque_figure', 'save',
-    'shaft_figure', 'timing_diagram', 'torque_curve', 'torque_figure',
+    'FORMATS', 'cam_figure', 'flywheel_curve', 'flywheel_figure', 'load_figure', 'motor_figure',
+    'orbit_figure', 'profile_figure', 'recorded_figure', 'recorded_torque_figure', 'save',
+    'shaft_figure', 'start_up_figure', 'timing_diagram', 'torque_curve', 'torque_figure',
 ]
