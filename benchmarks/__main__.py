@@ -9,26 +9,30 @@
 
 import argparse
 import json
+import sys
 
+from benchmarks.drive import drive_rows
 from benchmarks.motion import motion_rows
 from benchmarks.nodes import node_rows
 from benchmarks.row import Row
 from rich.console import Console
 from rich.table import Table
 
+_WIDTH = 118  # of a file or pipe, which has none of its own
+
 
 def main() -> None:
     """Run the benchmarks that the command line names."""
     parser = argparse.ArgumentParser(prog='python -m benchmarks', description=__doc__)
     parser.add_argument('--json', action='store_true', help='print the rows as JSON')
-    parser.add_argument('--only', choices=('motion', 'nodes'), help='run one family only')
+    parser.add_argument('--only', choices=('motion', 'drive', 'nodes'), help='run one family only')
     parser.add_argument('--seconds', type=float, default=10.0, help='length of each node run [s]')
     options = parser.parse_args()
     rows: list[Row] = []
-    if options.only != 'nodes':
-        rows += motion_rows()
-    if options.only != 'motion':
-        rows += node_rows(options.seconds)
+    for name, measure in (('motion', motion_rows), ('drive', drive_rows),
+                          ('nodes', lambda: node_rows(options.seconds))):
+        if options.only in (None, name):
+            rows += measure()
     if options.json:
         print(json.dumps([row._asdict() for row in rows], indent=2))
         return
@@ -38,7 +42,7 @@ def main() -> None:
                          overflow='fold')
     for row in rows:
         table.add_row(row.what, row.ours, row.peer, row.ratio, row.goal)
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else _WIDTH).print(table)
 
 
 if __name__ == '__main__':

@@ -7,6 +7,7 @@
 # language governing permissions and limitations under the License.
 """A line of several axes in a process of its own, measured from within."""
 
+import gc
 import json
 import resource
 import sys
@@ -55,6 +56,8 @@ def main() -> None:
         executor.add_node(node)
     start([master, *nodes])
     _spin(executor, _WARM_UP)
+    gc.collect()
+    gc.freeze()  # as the runner of the nodes does
     latencies.clear()
     schedule = master._schedule
     missed, used, began = schedule.missed, _cpu(), time.monotonic()
