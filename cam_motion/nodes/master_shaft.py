@@ -203,7 +203,7 @@ class MasterShaft(ManagedNode):
         if self._ticks_per_state and self._ticks % self._ticks_per_state == 0:
             self._joint_states.publish(
                 self._codec.pack(self._epoch_ns + time_ns, (phi,), (omega,)))
-            self.set_state(self._shaft.mode(t).value)
+        self.set_state(self._shaft.mode(t).value)
         self._ticks += 1
 
     def _emit(self, point: Point) -> None:

@@ -147,3 +147,13 @@ def test_begin_stop_brings_a_slow_ramp_to_rest_by_the_quick_stop(world):
     stop = [point for point in points if point.acceleration < 0.0]
     assert stop[-1].time - stop[0].time < 1.0  # of the machine's time
     check_changes(points, 150.0, 3000.0)
+
+
+def test_the_state_is_told_without_joint_states_too(world):
+    node = world.make(MasterShaft, {'joint_states_hz': 0.0, 'start_delay': 0.0})
+    states = world.states('master_shaft')
+    node.trigger_configure()
+    node.trigger_activate()
+    assert world.spin_until(lambda: 'running' in states)
+    assert world.call(SetBool, 'master_shaft/run', data=False).success
+    assert world.spin_until(lambda: states[-1] == 'stopped')
