@@ -45,28 +45,45 @@ class Limits:
     ----------
     velocity, acceleration, jerk : float | None
         In the unit of the axis per s, s² and s³; positive.
+    lowest, highest : float | None
+        Range of positions, in the unit of the axis.
 
     Raises
     ------
     ConfigurationError
-        When a limit is not a finite number above 0.
+        When a limit is not a finite number, one on a derivative is not above 0, or the range of
+        positions is empty.
 
     """
 
     velocity: float | None = None
     acceleration: float | None = None
     jerk: float | None = None
+    lowest: float | None = None
+    highest: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse limits that are none."""
+        rates = {name: self.of_order(order)
+                 for order, name in enumerate(QUANTITIES[1:], start=1)}
         problems = [
             Problem(f'limits.{name}', value, 'must be a finite number above 0',
                     'leave it out where nothing limits the axis')
-            for name, value in vars(self).items()
+            for name, value in rates.items()
             if value is not None and not (math.isfinite(value) and value > 0.0)
         ]
+        low, high = self.range
+        if not low < high:
+            problems.append(Problem(
+                'limits.highest', self.highest, f'must lie above limits.lowest, {self.lowest}'))
         if problems:
             raise ConfigurationError(problems)
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Range of positions, infinite where there is no limit."""
+        return (-math.inf if self.lowest is None else self.lowest,
+                math.inf if self.highest is None else self.highest)
 
     def of_order(self, order: int) -> float | None:
         """

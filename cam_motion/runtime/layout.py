@@ -1,0 +1,247 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""How the cams of an axis are coupled to the shaft, and the motion that comes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+import math
+from typing import NamedTuple
+
+from cam_motion.motion.limits import Limits, SpeedBound
+from cam_motion.motion.profile import CamProfile
+from cam_motion.runtime.demand import Demand
+from cam_motion.runtime.motion_over_angle import CoupledCam, Motion, Superposition
+from cam_motion.runtime.planning import TransitionError
+from cam_motion.runtime.ramp import RampLimits
+from cam_motion.units import TURN
+
+_STEADY = RampLimits(0.0, 0.0)
+_AHEAD = 1e-9  # strokes or turns: this far behind still counts as there, for rounding
+
+
+class Coupling(NamedTuple):
+    """
+    How one cam is coupled: y = scale * cam(ratio * phi + phase) + offset.
+
+    The ``ratio`` [-] is turns of the cam per turn of the shaft, the ``phase`` an angle of the
+    cam [rad], the ``scale`` [-] multiplies its lifts, the ``offset`` is in the axis' unit.
+    """
+
+    ratio: float = 1.0
+    phase: float = 0.0
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Layout:
+    """
+    The cams that make up the motion of an axis, and where they are anchored.
+
+    Attributes
+    ----------
+    cams : Mapping[str, CamProfile]
+        All cams of the axis.
+    couplings : Mapping[str, Coupling]
+        The coupling of each cam.
+    active : tuple[str, ...]
+        Names of the cams that are summed, at least one.
+    origin : float
+        Shaft angle at which the cams stand at their phase [rad]: 0 for a coupling that is
+        absolute on the side of the master.
+    shift : float
+        Added to the position, in the axis' unit: 0 for one that is absolute on the side of
+        the axis.
+
+    """
+
+    cams: Mapping[str, CamProfile]
+    couplings: Mapping[str, Coupling]
+    active: tuple[str, ...]
+    origin: float = 0.0
+    shift: float = 0.0
+
+    @property
+    def motion(self) -> Motion:
+        """Make the motion over the shaft angle."""
+        parts = [self._cam(name) for name in self.active]
+        first = parts[0]
+        parts[0] = CoupledCam(
+            first.profile, first.ratio, first.phase, first.scale, first.offset + self.shift)
+        return parts[0] if len(parts) == 1 else Superposition(tuple(parts))
+
+    def _cam(self, name: str) -> CoupledCam:
+        ratio, phase, scale, offset = self.couplings[name]
+        return CoupledCam(self.cams[name], ratio, phase - ratio * self.origin, scale, offset)
+
+    @property
+    def advance(self) -> float:
+        """Sum what the axis gains in one turn of the shaft, in its unit."""
+        return sum(self._cam(name).advance * self.couplings[name].ratio for name in self.active)
+
+    @property
+    def accumulates(self) -> bool:
+        """Whether the axis gains something in each cycle, as a belt does."""
+        return any(self.cams[name].advance for name in self.active)
+
+    @property
+    def period(self) -> float:
+        """Shaft angle after which the motion repeats, but for what it gains [rad]."""
+        return TURN / min(abs(self.couplings[name].ratio) for name in self.active)
+
+    def begun_at(self, start: float) -> Layout:
+        """
+        Let the cams begin at a shaft angle: relative on the side of the master.
+
+        Parameters
+        ----------
+        start : float
+            Shaft angle at which they stand at their phase [rad].
+
+        Returns
+        -------
+        Layout
+            The layout so anchored.
+
+        """
+        return replace(self, origin=start)
+
+    def lifted_to(self, y: float, start: float) -> Layout:
+        """
+        Shift the motion through a position: relative on the side of the axis.
+
+        Parameters
+        ----------
+        y : float
+            Position, in the unit of the axis.
+        start : float
+            Shaft angle at which it is passed [rad].
+
+        Returns
+        -------
+        Layout
+            The layout so anchored.
+
+        """
+        return replace(self, shift=self.shift + y - self.motion.sample(start)[0])
+
+    def ahead_of(self, y: float, start: float) -> Layout:
+        """
+        Shift a belt by whole strokes, which are all the same to it, until it lies ahead.
+
+        Parameters
+        ----------
+        y : float
+            Position at which the axis stands, in its unit.
+        start : float
+            Shaft angle at which it joins [rad].
+
+        Returns
+        -------
+        Layout
+            The layout so anchored: at that angle less than a stroke ahead. Unchanged for an
+            axis that returns.
+
+        """
+        stroke = abs(self.advance * self.period / TURN)
+        if not stroke:
+            return self
+        strokes = math.ceil((y - self.motion.sample(start)[0]) / stroke - _AHEAD)
+        return replace(self, shift=self.shift + strokes * stroke)
+
+    def continuing(self, old: Layout, start: float, sense: float) -> Layout:
+        """
+        Anchor a layout where another one is anchored that it takes over from.
+
+        Parameters
+        ----------
+        old : Layout
+            The layout before.
+        start : float
+            Shaft angle at which this one takes over [rad].
+        sense : float
+            -1 for a shaft that turns backwards.
+
+        Returns
+        -------
+        Layout
+            The layout so anchored. A belt with other strokes goes on from where its last cycle
+            began, whatever it has gained before.
+
+        """
+        new = replace(self, origin=old.origin, shift=old.shift)
+        scales = [new.couplings[name].scale for name in new.active]
+        if not (new.accumulates or old.accumulates) or (
+                new.active == old.active
+                and scales == [old.couplings[name].scale for name in old.active]):
+            return new
+        turns = math.floor(sense * (start - new.origin) / TURN + _AHEAD)
+        begin = new.origin + sense * turns * TURN
+        gap = old.motion.sample(begin)[0] - new.motion.sample(begin)[0]
+        return replace(new, shift=new.shift + gap)
+
+    def check_range(self, limits: Limits) -> None:
+        """
+        Check that an axis that returns stays within its positions.
+
+        Parameters
+        ----------
+        limits : Limits
+            Limits of the axis.
+
+        Raises
+        ------
+        TransitionError
+            When it would leave them, with the figures.
+
+        """
+        if self.accumulates or limits.range == (-math.inf, math.inf):
+            return
+        demand = Demand(self.motion, self.origin, self.origin + self.period)
+        if not demand.keeps_range(limits):
+            y = demand.values[0]
+            raise TransitionError(
+                f'the motion would go from {y.min():.6g} to {y.max():.6g}, beyond the limits of '
+                f'position ({limits.lowest} to {limits.highest}): take another offset or scale')
+
+    def speed_bound(self, limits: Limits) -> SpeedBound | None:
+        """
+        Find the highest steady speed of the shaft at which the limits hold.
+
+        Parameters
+        ----------
+        limits : Limits
+            Limits of the axis.
+
+        Returns
+        -------
+        SpeedBound | None
+            The bound, exact and with its segment for a single cam; None where nothing limits
+            the speed.
+
+        """
+        if len(self.active) == 1:
+            ratio, _, scale, _ = self.couplings[self.active[0]]
+            if scale == 0.0:
+                return None
+            gain = abs(scale)
+            seen = Limits(*(
+                None if (limit := limits.of_order(order)) is None
+                else limit / (gain * abs(ratio) ** order) for order in (1, 2, 3)))
+            bound = seen.highest_speed(self.cams[self.active[0]])
+            if bound is None:
+                return None
+            limit = limits.of_order(('velocity', 'acceleration', 'jerk').index(bound.quantity) + 1)
+            return bound._replace(limit=math.nan if limit is None else limit)
+        demand = Demand(self.motion, 0.0, self.period)
+        omega = demand.highest_speed(limits, _STEADY)
+        if math.isinf(omega):
+            return None
+        return SpeedBound(omega, 'limits', math.nan, '+'.join(self.active), math.nan)
