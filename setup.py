@@ -47,7 +47,7 @@ setup(
         'scipy',
         'zstandard',
     ],
-    extras_require={'test': ['pytest', 'pytest-timeout', 'hypothesis']},
+    extras_require={'test': ['distributed', 'hypothesis', 'pytest', 'pytest-timeout']},
     entry_points={
         'console_scripts': [
             f'{package_name} = {package_name}.cli:main',

@@ -15,6 +15,7 @@ from benchmarks.drive import drive_rows
 from benchmarks.motion import motion_rows
 from benchmarks.nodes import node_rows
 from benchmarks.row import Row
+from benchmarks.sweep import sweep_rows
 from rich.console import Console
 from rich.table import Table
 
@@ -25,11 +26,12 @@ def main() -> None:
     """Run the benchmarks that the command line names."""
     parser = argparse.ArgumentParser(prog='python -m benchmarks', description=__doc__)
     parser.add_argument('--json', action='store_true', help='print the rows as JSON')
-    parser.add_argument('--only', choices=('motion', 'drive', 'nodes'), help='run one family only')
+    parser.add_argument('--only', choices=('motion', 'drive', 'sweep', 'nodes'),
+                        help='run one family only')
     parser.add_argument('--seconds', type=float, default=10.0, help='length of each node run [s]')
     options = parser.parse_args()
     rows: list[Row] = []
-    for name, measure in (('motion', motion_rows), ('drive', drive_rows),
+    for name, measure in (('motion', motion_rows), ('drive', drive_rows), ('sweep', sweep_rows),
                           ('nodes', lambda: node_rows(options.seconds))):
         if options.only in (None, name):
             rows += measure()

@@ -33,7 +33,7 @@ def drive_rows() -> list[Row]:
     """
     settings = load_machine(_MACHINE).cam_drives['press_drive']
     drive = settings.drive
-    ours = best_of(lambda: start_up(drive, _DURATION), 5)
+    ours = best_of(lambda: start_up(drive, _DURATION), 15)
     orbit = best_of(lambda: find_orbit(drive), 15)
     stepping = best_of(lambda: step_in_time(drive, _DURATION, rtol=_RTOL), 2)
     euler = best_of(lambda: document_metrics(drive, settings.base), 1)

@@ -17,7 +17,7 @@ from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.executor import make_executor
 from cam_motion.nodes.master_shaft import MasterShaft
 from cam_motion.nodes.runner import start
-from cam_motion.nodes.wire import Point
+from cam_motion.runtime.point import Point
 import rclpy
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions

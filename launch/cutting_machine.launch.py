@@ -39,7 +39,7 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def machine_nodes(context: LaunchContext) -> list[Node]:
-    """Make the nodes of the machine, the master last, so that it finds the others there."""
+    """Make the nodes of the machine, what turns the shaft last, so that it finds the others."""
     config = Path(LaunchConfiguration('config').perform(context)).expanduser()
     namespace = LaunchConfiguration('namespace').perform(context).strip('/')
     record = LaunchConfiguration('record').perform(context)
@@ -47,10 +47,16 @@ def machine_nodes(context: LaunchContext) -> list[Node]:
     machine = yaml.safe_load(config.read_text(encoding='utf-8'))
     try:
         line = machine['line']['ros__parameters']
-        master, axes = line['master'], line['axes']
-    except (KeyError, TypeError) as error:
+        axes, drives = line['axes'], line.get('drives', [])
+        # a drive that turns the shaft is the master
+        turning = [name for name in drives if machine.get(name, {}).get(
+            'ros__parameters', {}).get('mode') == 'line_shaft']
+        executable, master = (
+            ('drive_sim', turning[0]) if turning else ('master_shaft', line['master']))
+    except (KeyError, TypeError, AttributeError) as error:
         raise RuntimeError(
-            f'{config}: line.ros__parameters must list the master and the axes') from error
+            f'{config}: line.ros__parameters must list the axes, and the master unless a drive '
+            'turns the shaft') from error
     parameters = in_namespace(machine, namespace) if namespace else config
 
     def node(executable: str, name: str, given: dict | None = None, **options: object) -> Node:
@@ -65,10 +71,10 @@ def machine_nodes(context: LaunchContext) -> list[Node]:
         bag = {'output': ParameterValue(record, value_type=str),
                'machine': ParameterValue(str(config), value_type=str)}
         nodes += [node('bag_recorder', 'bag_recorder', bag)]
-    nodes += [node('drive_sim', name) for name in line.get('drives', [])]
+    nodes += [node('drive_sim', name) for name in drives if name != master]
     # The line is whole or it is not: it ends with the first axis, or with the master.
     nodes += [node('cam_axis', name, on_exit=Shutdown()) for name in axes]
-    nodes += [node('master_shaft', master, on_exit=Shutdown())]
+    nodes += [node(executable, master, on_exit=Shutdown())]
     return nodes
 
 

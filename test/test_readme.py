@@ -11,8 +11,7 @@ from pathlib import Path
 import re
 
 from cam_motion.cli import main
-from cam_motion.io.parameters import TABLES
-from cam_motion.io.reference import BLOCKS, refreshed
+from cam_motion.io.reference import BLOCKS, refreshed, TABLES
 import pytest
 
 pytestmark = pytest.mark.timeout(30)

@@ -19,7 +19,7 @@ from cam_motion.io.config import read_sections
 from cam_motion.io.summary import AxisSummary, bound_text, check_sections, CheckSummary
 from cam_motion.io.summary_data import check_as_data
 from cam_motion.motion.limits import QUANTITIES
-from cam_motion.units import rate_text
+from cam_motion.units import rate_text, RPM
 
 _SLACK = 1e-9  # how far (relative) a peak may exceed its limit by rounding, as in the check
 
@@ -84,6 +84,10 @@ def _print(check: CheckSummary, source: str) -> None:
             unit = check.axes[name].axis.unit
             out.print(f'highest speed {speed(bound.omega)} cycles/min, '
                       f'held back by {name}, {bound_text(bound, unit)}', style='bold')
+    if check.margins:
+        _print_margins(check)
+    for name, each in check.interlocks.items():
+        out.print(f'interlock {name}: kept, {each.verdict.text}')
     if check.problems:
         out.file.flush()
         print_problems(check.problems, source)
@@ -118,6 +122,16 @@ def _print_axis(summary: AxisSummary, speed_cpm: float) -> None:
     if any(limits):
         out.add_section()
         row(out, 'limit', '', '', '', '', *('' if x is None else number(x) for x in limits))
+    console().print(out)
+
+
+def _print_margins(check: CheckSummary) -> None:
+    out = table("left of the motors' limits", [
+        ('drive', 'left'), ('peak torque\nN m', 'right'), ('RMS torque\nN m', 'right'),
+        ('speed\nrpm', 'right')])
+    for name, left in check.margins.items():
+        figures = (left.peak_torque_margin, left.rms_torque_margin, left.speed_margin / RPM)
+        row(out, name, *(('! ' if figure < 0.0 else '') + number(figure) for figure in figures))
     console().print(out)
 
 

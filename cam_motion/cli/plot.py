@@ -21,7 +21,7 @@ from cam_motion.cli.terminal import print_files, print_json, progress, save_figu
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.config import read_sections
 from cam_motion.io.machine import build_machine, Machine
-from cam_motion.io.summary import with_speed
+from cam_motion.io.summary import turning_drive, with_speed
 from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.units import RPM
 
@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     """
     sections = read_sections(arguments.config)
-    if arguments.speed_cpm:
+    if arguments.speed_cpm and not turning_drive(sections):
         sections = with_speed(sections, arguments.speed_cpm[0])
     machine = build_machine(sections)
     axes = machine.diagram.axes
@@ -112,5 +112,6 @@ def _pictures(machine: Machine, only: str | None,
     for name, settings in machine.drives.items():
         if settings.axis in axes:
             curves = [torque_curve(settings, axes[settings.axis], omega) for omega in speeds]
-            pictures.append((f'torque_{name}', partial(torque_figure, name, curves)))
+            pictures.append((f'torque_{name}', partial(
+                torque_figure, name, curves, motor=settings.motor)))
     return pictures

@@ -86,12 +86,19 @@ def _peaks_table(report: Report) -> Table:
 
 
 def _drives_table(report: Report) -> Table:
+    followed = any(drive.following_error is not None for drive in report.drives.values())
     made = table('drives', [
         ('drive', 'left'), ('states', 'right'), ('peak torque\nN m', 'right'),
-        ('RMS torque\nN m', 'right'), ('peak speed\nrpm', 'right')])
+        ('RMS torque\nN m', 'right'), ('peak speed\nrpm', 'right'),
+        *([('peak following error', 'right')] if followed else [])])
+    machine = report.recording.machine
     for name, drive in report.drives.items():
-        row(made, name, str(drive.states), number(drive.peak_torque), number(drive.rms_torque),
-            number(drive.peak_speed / RPM))
+        cells = [number(drive.peak_torque), number(drive.rms_torque),
+                 number(drive.peak_speed / RPM)]
+        if drive.following_error is not None:
+            unit = machine.diagram.axes[machine.drives[name].axis].unit
+            cells.append(f'{number(drive.following_error)} {unit}')
+        row(made, name, str(drive.states), *cells, *[''] * (3 + followed - len(cells)))
     return made
 
 

@@ -109,7 +109,7 @@ class Session:
         machine = self._machine
         wanted = {
             'shaft', *(f'{axis}/setpoint' for axis in machine.diagram.axes),
-            *(f'{drive}/drive_state' for drive in machine.drives),
+            *(f'{drive}/drive_state' for drive in machine.drive_names),
         }
         deadline = monotonic() + _START_WITHIN
         while not (line.ended or self._recorder_lost() or monotonic() > deadline):

@@ -30,7 +30,7 @@ from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.config import load_machine
 from cam_motion.io.machine import Machine
 from cam_motion.io.plain import plain
-from cam_motion.io.simulation import simulate, START_UP
+from cam_motion.io.simulation import live_cycle, simulate, START_UP
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,6 +41,16 @@ _LABELS = {
     'regenerated_energy_per_cycle': ('energy fed back per cycle', 'J'),
     'motor_work_per_cycle': ('work of the motor per cycle', 'J'),
     'inertia_ratio': ('inertia of the load to that of the motor', ''),
+    'peak_torque_margin': ('least distance from the peak torque', 'N m'),
+    'rms_torque_margin': ('distance of the RMS from the continuous torque', 'N m'),
+    'speed_margin_rpm': ('distance from the largest speed', 'rpm'),
+    'mean_speed_rpm': ('mean motor speed', 'rpm'), 'peak_current': ('peak motor current', 'A'),
+    'rms_current': ('RMS motor current', 'A'),
+    'peak_following_error': ('peak following error', 'unit'),
+    'rms_following_error': ('RMS following error', 'unit'),
+    'saturated_s_per_cycle': ('at a limit, per cycle', 's'),
+    'saturations_per_cycle': ('limits reached, per cycle', ''),
+    'catches_up': ('catches up within each cycle', ''),
     'fluctuation_pct': ('speed fluctuation', '%'), 'stability_pct': ('stability', '%'),
     'running_cost_pct': ('running cost', '%'), 'period_s': ('period', 's'),
     'min_speed_rpm': ('least speed', 'rpm'), 'max_speed_rpm': ('greatest speed', 'rpm'),
@@ -51,8 +61,8 @@ _LABELS = {
     'max_pressure_angle_deg': ('greatest pressure angle', 'deg'),
     'max_torque_estimate': ('torque at constant speed', 'N m'),
 }
-_PARTS = {'orbit': 'periodic motion', 'start_up': 'start-up from rest',
-          'document': "document's definitions"}
+_PARTS = {'exact': 'exact motion', 'orbit': 'periodic motion', 'start_up': 'start-up from rest',
+          'document': "document's definitions", 'servo': 'servo drive'}
 
 
 def add_to(verbs: Any) -> None:
@@ -109,8 +119,10 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if not results:
         console().print('the machine has no drives')
+    units = {name: machine.diagram.axes[drive.axis].unit
+             for name, drive in machine.drives.items()}
     for name, result in results.items():
-        _print(name, result)
+        _print(name, _columns(result), units.get(name, ''))
     print_files(files)
     return 0
 
@@ -135,7 +147,12 @@ def _pictures(machine: Machine) -> Iterator[tuple[str, Callable[[], Figure]]]:
     for name, follower in machine.drives.items():
         curve = plots.torque_curve(
             follower, machine.diagram.axes[follower.axis], machine.master.speed)
-        yield f'torque_{name}', partial(plots.torque_figure, name, [curve])
+        live = live_cycle(machine, follower)
+        yield f'torque_{name}', partial(
+            plots.torque_figure, name, [curve], motor=follower.motor, live=live)
+        if live is not None:
+            unit = machine.diagram.axes[follower.axis].unit
+            yield f'following_{name}', partial(plots.following_figure, name, live, unit)
     for name, drive in machine.cam_drives.items():
         orbit, run = find_orbit(drive.drive), start_up(drive.drive, START_UP)
         yield f'cam_{name}', partial(plots.cam_figure, drive)
@@ -151,7 +168,15 @@ def _flywheel(drive: CamDriveSettings) -> Figure:
     return flywheel_figure(drive, flywheel_curve(drive))
 
 
-def _print(name: str, result: dict[str, Any]) -> None:
+def _columns(result: dict[str, Any]) -> dict[str, Any]:
+    """Put the exact cycle of a servo drive beside what it really does."""
+    if 'servo' not in result:
+        return result
+    exact = {key: value for key, value in result.items() if key != 'servo'}
+    return {'exact': exact, 'servo': result['servo']}
+
+
+def _print(name: str, result: dict[str, Any], unit: str) -> None:
     parts = [key for key in _PARTS if key in result]
     if not parts:
         shown = table(name, [('one cycle', 'left'), ('', 'right'), ('', 'left')])
@@ -165,13 +190,16 @@ def _print(name: str, result: dict[str, Any]) -> None:
     by_label = [{_LABELS[key]: value for key, value in result[part].items()} for part in parts]
     for label in dict.fromkeys(label for column in by_label for label in column):
         row(shown, label[0],
-            *(_text(column[label]) if label in column else '' for column in by_label), label[1])
+            *(_text(column[label]) if label in column else '' for column in by_label),
+            unit if label[1] == 'unit' else label[1])
     console().print(shown)
     if 'document' in parts:
         console().print(_why_they_differ(result))
 
 
-def _text(value: float | None) -> str:
+def _text(value: float | bool | None) -> str:
+    if isinstance(value, bool):
+        return 'yes' if value else 'no'
     return '–' if value is None else number(value, 6)
 
 

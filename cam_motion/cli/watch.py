@@ -191,7 +191,8 @@ def _subscribe(node: Any, machine: Machine) -> dict[tuple[str, str], Any]:
         ('diagnostics', '', DiagnosticArray, '/diagnostics', several),
         *(('axis', name, JointTrajectoryPoint, f'{name}/setpoint', newest)
           for name in machine.diagram.axes),
-        *(('drive', name, JointState, f'{name}/drive_state', newest) for name in machine.drives),
+        *(('drive', name, JointState, f'{name}/drive_state', newest)
+          for name in machine.drive_names),
     ]
     return {
         (kind, name): node.create_subscription(message, topic, _ignore, qos)

@@ -26,10 +26,11 @@ from cam_motion.units import DEGREE, TURN
 import numpy as np
 
 _LONGEST = math.pi / 3.0  # of an element [rad]: short enough for the points chosen below
-_SHORTEST = 1e-9  # edges closer than this [rad] are the same edge, rounded
 _INSIDE = 1e-12  # how far within an element its terms are looked up, free of steps at its ends
-POINTS = 10
-"""Gauss points per element: order 20, which leaves rounding only."""
+POINTS = 12
+"""Gauss points per element: order 24, which leaves rounding only, 1e-12 between the points too."""
+SHORTEST = 1e-9
+"""Edges closer than this are the same edge, rounded [rad]."""
 
 
 class Element(NamedTuple):
@@ -139,15 +140,15 @@ class CamDrive:
         ordered = sorted(edges)
         merged = [0.0]
         for x in ordered:
-            if merged[-1] + _SHORTEST < x < TURN - _SHORTEST:
+            if merged[-1] + SHORTEST < x < TURN - SHORTEST:
                 merged.append(x)
         merged.append(TURN)
         found = []
         for low, high in zip(merged, merged[1:]):
             count = math.ceil((high - low) / _LONGEST)
-            cuts = [low + (high - low) * k / count for k in range(count)] + [high]
+            ends = [low + (high - low) * k / count for k in range(count)] + [high]
             piece = max(0, bisect_right(curve.breaks, 0.5 * (low + high)) - 1)
-            found += [Element(a, b, piece) for a, b in zip(cuts, cuts[1:])]
+            found += [Element(a, b, piece) for a, b in zip(ends, ends[1:])]
         return tuple(found)
 
     def follower(self, element: Element, q: Array) -> Follower:
@@ -189,12 +190,10 @@ class CamDrive:
             J with all inertias, C, Q0 and Q1.
 
         """
-        found = [part.terms(at) for part in self.parts]
-        return Terms(
-            self.fixed_inertia + sum((t.inertia for t in found), np.zeros_like(at.q)),
-            sum((t.centripetal for t in found), np.zeros_like(at.q)),
-            sum((t.force for t in found), np.zeros_like(at.q)),
-            sum((t.damping for t in found), np.zeros_like(at.q)))
+        zero = np.zeros_like(at.q)
+        first = Terms(zero + self.fixed_inertia, zero, zero, zero)
+        return Terms(*(sum(column[1:], column[0]) for column in zip(
+            first, *(part.terms(at) for part in self.parts))))
 
     def motor_torque(self, omega: Array) -> Array:
         """
@@ -216,9 +215,9 @@ class CamDrive:
         found: Array = self.gearbox.gain(torque, speed) * torque
         return found
 
-    def motor_slope(self, omega: Array) -> Array:
+    def motor_line(self, omega: Array) -> tuple[Array, Array]:
         """
-        Differentiate the motor's torque at the cam shaft with respect to its speed.
+        Linearise the motor's torque at the cam shaft over its speed.
 
         Parameters
         ----------
@@ -227,15 +226,15 @@ class CamDrive:
 
         Returns
         -------
-        ndarray
-            Slope [N m s/rad].
+        tuple[ndarray, ndarray]
+            Torque [N m] and its derivative with respect to the speed [N m s/rad].
 
         """
         ratio = self.gearbox.ratio
         speed = ratio * omega
-        gain = self.gearbox.gain(self.motor.torque(speed), speed)
-        found: Array = gain * ratio * self.motor.slope(speed)
-        return found
+        torque = self.motor.torque(speed)
+        gain = self.gearbox.gain(torque, speed)
+        return gain * torque, gain * ratio * self.motor.slope(speed)
 
     def acceleration(self, at: Follower, omega: Array) -> Array:
         """

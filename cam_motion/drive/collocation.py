@@ -67,6 +67,30 @@ def _inverse(count: int) -> Array:
 
 
 @cache
+def spread(count: int, places: int) -> Array:
+    """
+    Interpolate between the ends and the Gauss points of the unit interval.
+
+    Parameters
+    ----------
+    count : int
+        Number n of Gauss points.
+    places : int
+        Number m of places, evenly spread, both ends included.
+
+    Returns
+    -------
+    ndarray, shape (m, n + 2)
+        Weights of the values at 0, the points and 1, for the value at each place.
+
+    """
+    nodes = np.concatenate([[-1.0], legendre.leggauss(count)[0], [1.0]])
+    values = legendre.legvander(np.linspace(-1.0, 1.0, places), count + 1)
+    return np.asarray(
+        values @ np.linalg.inv(legendre.legvander(nodes, count + 1)), dtype=np.float64)
+
+
+@cache
 def gauss_rule(count: int) -> GaussRule:
     """
     Make the rule with a number of points.
@@ -91,3 +115,22 @@ def gauss_rule(count: int) -> GaussRule:
     points = np.asarray(0.5 * (x + 1.0), dtype=np.float64)
     matrix = _integrals(points, count) @ _inverse(count)
     return GaussRule(points, np.asarray(0.5 * w, dtype=np.float64), matrix)
+
+
+@cache
+def tail(count: int) -> Array:
+    """
+    Give the last two terms of the Legendre series through the values at the points.
+
+    Parameters
+    ----------
+    count : int
+        Number n of Gauss points.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        Weights of the values at the points, for each term.
+
+    """
+    return np.asarray(_inverse(count)[-2:].T, dtype=np.float64)

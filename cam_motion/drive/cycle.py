@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from cam_motion.drive.collocation import gauss_rule
-from cam_motion.drive.inverse import DriveState, FollowerDrive
+from cam_motion.drive.inverse import FollowerDrive
 from cam_motion.motion.piece import Array
 from cam_motion.motion.profile import CamProfile
 from cam_motion.units import TURN
@@ -39,6 +39,55 @@ class CycleFigures(NamedTuple):
     inertia_ratio: float | None
 
 
+class CycleNodes(NamedTuple):
+    """
+    One cycle of an axis at steady shaft speed, as setpoints at chosen moments.
+
+    ``dense`` and ``inner`` hold positions, velocities and accelerations [unit, unit/s, unit/s²]:
+    the first closely spaced for peaks, steps taken from both sides, the second at Gauss points,
+    with ``weights`` [s] that integrate over the ``period`` [s].
+    """
+
+    dense: tuple[Array, Array, Array]
+    inner: tuple[Array, Array, Array]
+    weights: Array
+    period: float
+
+
+def cycle_nodes(profile: CamProfile, omega: float) -> CycleNodes:
+    """
+    Choose the moments of a cycle at which a drive is looked at.
+
+    Parameters
+    ----------
+    profile : CamProfile
+        The cam of its axis.
+    omega : float
+        Speed of the master shaft [rad/s]; not zero.
+
+    Returns
+    -------
+    CycleNodes
+        The setpoints.
+
+    """
+    rule = gauss_rule(_POINTS)
+    cuts = np.linspace(0.0, 1.0, _PARTS + 1)
+    inner = (cuts[:-1, None] + rule.points / _PARTS).ravel()
+    weights = np.tile(rule.weights / _PARTS, _PARTS)
+    dense = np.clip(np.linspace(0.0, 1.0, 4 * _PARTS + 1), _INSIDE, 1.0 - _INSIDE)
+    setpoints = []
+    for x in (dense, inner):
+        rows = []
+        for piece in profile.curve.pieces:
+            u, slope = x * piece.length, piece.derivative
+            rows.append((piece(u), slope(u) * omega, slope.derivative(u) * omega * omega))
+        position, velocity, acceleration = (np.concatenate(column) for column in zip(*rows))
+        setpoints.append((position, velocity, acceleration))
+    times = [weights * piece.length / abs(omega) for piece in profile.curve.pieces]
+    return CycleNodes(setpoints[0], setpoints[1], np.concatenate(times), TURN / abs(omega))
+
+
 def cycle_figures(drive: FollowerDrive, profile: CamProfile, omega: float) -> CycleFigures:
     """
     Go through one cycle at steady shaft speed.
@@ -58,29 +107,16 @@ def cycle_figures(drive: FollowerDrive, profile: CamProfile, omega: float) -> Cy
         The figures; torques at steps are taken from both sides.
 
     """
-    rule = gauss_rule(_POINTS)
-    cuts = np.linspace(0.0, 1.0, _PARTS + 1)
-    inner = (cuts[:-1, None] + rule.points / _PARTS).ravel()
-    weights = np.tile(rule.weights / _PARTS, _PARTS)
-    ends = np.clip(np.linspace(0.0, 1.0, 4 * _PARTS + 1), _INSIDE, 1.0 - _INSIDE)
-    peak = speed = square = driven = fed_back = 0.0
-    for piece in profile.curve.pieces:
-        def at(x: Array, piece=piece) -> DriveState:  # type: ignore[no-untyped-def]
-            u = x * piece.length
-            slope = piece.derivative
-            return drive.follow_all(
-                piece(u), slope(u) * omega, slope.derivative(u) * omega * omega)
-        state = at(ends)
-        peak = max(peak, float(np.max(np.abs(state.motor_torque))))
-        speed = max(speed, float(np.max(np.abs(state.motor_velocity))))
-        state = at(inner)
-        time = piece.length / abs(omega)
-        power = state.motor_torque * state.motor_velocity
-        square += time * float(weights @ state.motor_torque ** 2)
-        driven += time * float(weights @ power)
-        fed_back += time * float(weights @ np.maximum(-power, 0.0))
+    nodes = cycle_nodes(profile, omega)
+    state = drive.follow_all(*nodes.dense)
+    peak = float(np.max(np.abs(state.motor_torque)))
+    speed = float(np.max(np.abs(state.motor_velocity)))
+    state = drive.follow_all(*nodes.inner)
+    power = state.motor_torque * state.motor_velocity
+    square = float(nodes.weights @ state.motor_torque ** 2)
     ratio = None
     if drive.motor_inertia > 0.0:
         ratio = drive.load_inertia / drive.gear_ratio ** 2 / drive.motor_inertia
     return CycleFigures(
-        peak, float(np.sqrt(square * abs(omega) / TURN)), speed, driven, fed_back, ratio)
+        peak, float(np.sqrt(square / nodes.period)), speed, float(nodes.weights @ power),
+        float(nodes.weights @ np.maximum(-power, 0.0)), ratio)

@@ -20,7 +20,7 @@ from numpy.polynomial import polynomial
 
 
 class Motor(Protocol):
-    """What a drive needs to know of its motor."""
+    """What a drive needs to know of its motor, whose torque is zero at synchronous speed only."""
 
     inertia: float
     synchronous_speed: float
@@ -124,7 +124,8 @@ class InductionMotor:
         s = 1.0 - speed / self.synchronous_speed
         gap = self.breakdown_slip - s
         bend = np.minimum(s, 1.0)
-        return self.breakdown_torque * s / (s + gap * gap * (self.a - self.b * bend ** 3))
+        rest = self.a - self.b * bend * bend * bend
+        return self.breakdown_torque * s / (s + gap * gap * rest)
 
     def slope(self, speed: Any) -> Any:
         """
@@ -144,9 +145,10 @@ class InductionMotor:
         s = 1.0 - speed / self.synchronous_speed
         gap = self.breakdown_slip - s
         bend = np.minimum(s, 1.0)
-        rest = self.a - self.b * bend ** 3
+        square = self.b * bend * bend
+        rest = self.a - square * bend
         below = s + gap * gap * rest
-        turn = 1.0 - 2.0 * gap * rest - 3.0 * gap * gap * self.b * bend ** 2 * (s < 1.0)
+        turn = 1.0 - gap * (2.0 * rest + 3.0 * gap * square * (s < 1.0))
         by_slip = self.breakdown_torque * (below - s * turn) / (below * below)
         return -by_slip / self.synchronous_speed
 

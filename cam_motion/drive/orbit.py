@@ -9,21 +9,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from cam_motion.drive.cam_drive import CamDrive, Element, POINTS
+from cam_motion.drive.approach import approach, Road
+from cam_motion.drive.cam_drive import CamDrive
+from cam_motion.drive.cells import LoadTable
 from cam_motion.drive.collocation import gauss_rule
-from cam_motion.drive.stretch import least, Stretch
-from cam_motion.errors import CamMotionError
-from cam_motion.units import RPM
+from cam_motion.drive.course import Course
+from cam_motion.drive.designs import Designs, Shafts
+from cam_motion.drive.passage import settle
+from cam_motion.drive.stretch import least, least_contact_force, passing, Stretch
+from cam_motion.errors import CamMotionError, ConfigurationError
+from cam_motion.motion.piece import Array
+from cam_motion.units import RPM, TURN
 import numpy as np
 
-_STEPS = 60
-_REFINEMENTS = 12
-_RUNAWAY = 1e4  # times the energy at nominal speed: no motor is meant for that
-_PLACED = 1e-8  # a cut misplaced by this [rad] changes the energy by its square only
-_CONVERGED = 1e-13  # relative; what is left then is rounding
+_STEPS = 4  # per element, of the rough search
 
 
 class NoOrbitError(CamMotionError):
@@ -60,7 +63,8 @@ class Orbit:
     @cached_property
     def speeds(self) -> tuple[float, float]:
         """Find the least and the greatest speed of the cam shaft [rad/s]."""
-        return (least(self.stretches, Stretch.omega), least(self.stretches, Stretch.omega, -1.0))
+        return (least(self.stretches, lambda _, omega: omega),
+                least(self.stretches, lambda _, omega: omega, -1.0))
 
     def least_contact_force(self, base: float) -> float:
         """
@@ -77,7 +81,7 @@ class Orbit:
             Force [N].
 
         """
-        return least(self.stretches, lambda stretch, q: stretch.contact_force(q, base))
+        return least_contact_force(self.stretches, base)
 
     @cached_property
     def motor_work(self) -> float:
@@ -85,8 +89,7 @@ class Orbit:
         total = 0.0
         for stretch in self.stretches:
             rule, drive = gauss_rule(stretch.powers.size), stretch.drive
-            omega = stretch.omega(stretch.element.start + stretch.span * rule.points)
-            torque = drive.motor.torque(drive.gearbox.ratio * omega)
+            torque = drive.motor.torque(drive.gearbox.ratio / stretch.slowness)
             total += drive.gearbox.ratio * stretch.span * float(rule.weights @ torque)
         return total
 
@@ -100,37 +103,9 @@ class Orbit:
             Shaft angles within one turn [rad].
 
         """
-        found: list[float] = []
-        before = 0.0
-        for stretch in self.stretches:
-            q, signs = stretch.motor_signs()
-            if not signs.size:
-                continue
-            if before * signs[0] < 0.0:
-                found.append(stretch.element.start)
-            found += [stretch.reversal_between(q[k], q[k + 1])
-                      for k in np.flatnonzero(signs[:-1] * signs[1:] < 0.0)]
-            before = signs[-1]
-        return sorted(found)
-
-
-class _Revolution:
-    """The terms of a drive at all Gauss points of a revolution, and the integration over it."""
-
-    def __init__(self, drive: CamDrive, elements: tuple[Element, ...]) -> None:
-        rule = gauss_rule(POINTS)
-        spans = np.array([e.end - e.start for e in elements])
-        columns = [drive.terms(drive.follower(e, e.start + span * rule.points))
-                   for e, span in zip(elements, spans)]
-        self.inertia, _, self.force, self.damping = (
-            np.concatenate([getattr(c, name) for c in columns]) for name in columns[0]._fields)
-        self.weights = np.concatenate([span * rule.weights for span in spans])
-        count = self.weights.size
-        self.matrix = np.tile(self.weights, (count, 1))
-        for k, span in enumerate(spans):
-            rows = slice(k * POINTS, (k + 1) * POINTS)
-            self.matrix[rows, rows] = span * rule.matrix
-            self.matrix[rows, (k + 1) * POINTS:] = 0.0
+        drive = self.stretches[0].drive
+        synchronous = drive.motor.synchronous_speed / drive.gearbox.ratio
+        return [angle for _, angle, _ in passing(self.stretches, synchronous)]
 
 
 def find_orbit(drive: CamDrive) -> Orbit:
@@ -154,78 +129,42 @@ def find_orbit(drive: CamDrive) -> Orbit:
 
     Notes
     -----
-    Where the power in the gearbox changes its direction, Q has a kink; the revolution is split
-    there, and solved again until the places stand.
-
-    With the energy E = J w²/2 as unknown, dE/dq = Q(q, w(E)) is one equation of first order in
-    the shaft angle. It is collocated at the Gauss points of all elements of a revolution, with
-    E(2 pi) = E(0), and solved by Newton's method: the fixed point of the one-revolution map
-    without going through a single revolution.
+    The fixed point of the one-revolution map, without going through a single revolution: the
+    energy equation is solved for all elements at once, with E(2 pi) = E(0).
 
     """
-    cuts: list[float] = []
-    orbit = _solve(drive, drive.elements, 0.5 * drive.nominal_speed ** 2)
-    if drive.gearbox.efficiency == 1.0:
-        return orbit
-    for _ in range(_REFINEMENTS):
-        reversals = orbit.power_reversals()
-        if len(reversals) == len(cuts) and np.allclose(reversals, cuts, rtol=0.0, atol=_PLACED):
-            break
-        cuts = reversals
-        inertia = drive.terms(drive.follower(drive.elements[0], np.zeros(1))).inertia[0]
-        orbit = _solve(drive, drive.split_at(cuts), orbit.start_energy / inertia)
-    return orbit
+    # on the way to finding that there is none, the search may leave all numbers behind
+    with np.errstate(all='ignore'):
+        base = Course.over(drive, drive.elements)
+        for guess in _guesses(drive, base):
+            found = settle(base, guess, None)
+            if found is not None and abs(found.multiplier) < 1.0:
+                return Orbit(found.stretches(0.0), found.multiplier)
+        raise NoOrbitError(_why(base))
 
 
-def _solve(drive: CamDrive, elements: tuple[Element, ...], half_square: float) -> Orbit:
-    """Solve with given elements, from a guess of w²/2."""
-    table = _Revolution(drive, elements)
-    count = table.weights.size
-    system = np.zeros((count + 1, count + 1))
-    start = table.inertia * half_square
-    state = np.append(start, start[0])
-    eye = np.eye(count)
-    step = np.inf
-    for _ in range(_STEPS):
-        energy, first = state[:-1], state[-1]
-        omega = np.sqrt(2.0 * energy / table.inertia)
-        power = table.force + table.damping * omega + drive.motor_torque(omega)
-        slope = (table.damping + drive.motor_slope(omega)) / (table.inertia * omega)
-        inner = eye - table.matrix * slope
-        if step < _CONVERGED:
-            break
-        system[:-1, :-1], system[:-1, -1] = inner, -1.0
-        system[-1, :-1] = table.weights * slope
-        residual = np.append(energy - first - table.matrix @ power, table.weights @ power)
-        if not np.all(np.isfinite(system)) or np.max(energy) > _RUNAWAY * np.max(start):
-            raise NoOrbitError(_why(drive, table))
-        change = np.linalg.solve(system, -residual)
-        # never below a tenth of the energy there is: the speed must stay positive
-        falling = float(np.max(-change / state))
-        change *= min(1.0, 0.9 / falling) if falling > 0.0 else 1.0
-        state = state + change
-        step = float(np.max(np.abs(change / state)))
-    else:
-        raise NoOrbitError(_why(drive, table))
-    multiplier = 1.0 + float((table.weights * slope) @ np.linalg.solve(inner, np.ones(count)))
-    if not abs(multiplier) < 1.0:
-        raise NoOrbitError(_why(drive, table))
-    stretches: list[Stretch] = []
-    at, time = float(first), 0.0
-    shape = (len(elements), POINTS)
-    for element, powers, slowness in zip(
-            elements, power.reshape(shape), (1.0 / omega).reshape(shape)):
-        stretches.append(Stretch(drive, element, time, at, powers, slowness))
-        at, time = stretches[-1].energy_at_end, stretches[-1].time_at_end
-    return Orbit(tuple(stretches), multiplier)
+def _guesses(drive: CamDrive, base: Course) -> Iterator[Array]:
+    """Give energies to begin the search with, the cheap ones first."""
+    yield base.steady(0.5 * drive.nominal_speed ** 2)
+    # the motor may be meant for another speed than the cam shaft, or the shaft fluctuate widely
+    try:
+        shafts = Shafts.of(Designs.of([drive]))
+    except ConfigurationError:
+        return  # a motor with a torque curve of its own
+    road = Road(LoadTable(drive), _STEPS)
+    speeds, exists = approach(shafts, road)
+    if exists[0] != 0.0:
+        omega = np.interp(base.angles[:, 1:-1], road.q, speeds[:, 0])
+        yield 0.5 * base.terms.inertia[:, 1:-1] * omega ** 2
 
 
-def _why(drive: CamDrive, table: _Revolution) -> str:
+def _why(course: Course) -> str:
+    drive = course.drive
     speeds = np.linspace(0.0, drive.nominal_speed * 1.5, 301)
     largest = float(np.max(drive.motor_torque(speeds)))
-    needed = -float(table.weights @ (table.force + table.damping * drive.nominal_speed))
-    needed /= float(np.sum(table.weights))
-    peak = -float(np.min(table.force))
+    taken = -(course.terms.force + course.terms.damping * drive.nominal_speed)[:, 1:-1]
+    weights = course.spans * gauss_rule(taken.shape[1]).weights
+    needed, peak = float(np.sum(weights * taken)) / TURN, -float(np.min(course.terms.force))
     return (
         f'no periodic motion near {drive.nominal_speed / RPM:g} rpm: the load takes {needed:.4g} '
         f'N m on average and up to {peak:.4g} N m, the motor gives up to {largest:.4g} N m at the '

@@ -16,22 +16,19 @@ import math
 
 from cam_motion.drive.cam_drive import CamDrive, Element, POINTS
 from cam_motion.drive.collocation import gauss_rule
-from cam_motion.drive.load import Terms
-from cam_motion.drive.stretch import least, Stretch
+from cam_motion.drive.course import Course
+from cam_motion.drive.passage import Passage, settle, solve
+from cam_motion.drive.stretch import least_contact_force, passing, Stretch
 from cam_motion.errors import CamMotionError
 from cam_motion.motion.piece import Array
-from cam_motion.units import RPM, TURN
+from cam_motion.units import DEGREE, RPM, TURN
 import numpy as np
-from scipy.optimize import brentq
 
-_LAUNCH_ANGLE = 0.1  # from rest the motion is first found over time, up to about here [rad]
+_LAUNCH_ANGLE = 0.03  # from rest the motion is first found over time, up to about here [rad]
 _PICARD_STEPS = 60
-_NEWTON_STEPS = 25
 _CONVERGED = 1e-13
-_CUTTING_STEPS = 6
-_PLACED = 1e-8  # a cut misplaced by this [rad] changes the energy by its square only
-_LEAST_CUT = 1e-7  # a stretch shorter than this [rad] is not split any more
-_GROWTH = 2.0  # behind the launch each stretch ends at most at this many times its beginning
+_GROWTH = 2.0  # behind the launch each element ends at most at this many times its beginning
+_NEARLY = 0.8  # of an element, from which on it is not split any more
 
 
 class StallError(CamMotionError):
@@ -119,16 +116,8 @@ class StartUp:
             Times [s], in order; the launch, far below any working speed, is left out.
 
         """
-        found = []
-        for stretch in self.stretches:
-            q = stretch.dense()
-            above = stretch.omega(q) - speed
-            for k in np.flatnonzero((above[:-1] < 0.0) & (above[1:] >= 0.0)):
-                place = brentq(
-                    lambda x, stretch=stretch: float(stretch.omega(np.array([x]))[0]) - speed,
-                    q[k], q[k + 1], xtol=1e-13)
-                found.append(float(stretch.times(np.array([place]))[0]))
-        return found
+        return [float(stretch.times(np.array([angle]))[0])
+                for stretch, angle, up in passing(self.stretches, speed) if up]
 
     def least_contact_force(self, base: float) -> float:
         """
@@ -149,8 +138,7 @@ class StartUp:
         angles, omegas = self.launch.state(np.linspace(0.0, self.launch.duration, 65))
         at = drive.follower(drive.elements[0], angles)
         first = drive.contact_force(at, omegas, drive.acceleration(at, omegas), base)
-        rest = least(self.stretches, lambda stretch, q: stretch.contact_force(q, base))
-        return min(float(np.min(first)), rest)
+        return min(float(np.min(first)), least_contact_force(self.stretches, base))
 
     @cached_property
     def history(self) -> tuple[Array, Array, Array]:
@@ -183,51 +171,81 @@ def start_up(drive: CamDrive, duration: float) -> StartUp:
     Raises
     ------
     StallError
-        When the motor does not start, or comes to a stop before the end.
+        When the motor does not start, or comes to a stop before the revolution in which the
+        duration ends is over.
 
     Notes
     -----
-    At rest the energy equation is singular, so the first tenth of a radian is found over time, by
-    Picard iteration at Gauss points. From there on each element is solved by Newton's method at
-    its Gauss points, cut where the power in the gearbox changes its direction.
+    At rest the energy equation is singular, so the first moments are found over time, by Picard
+    iteration at Gauss points. From there on each revolution is solved at once, beginning with
+    what the last one lets expect; when two begin all but alike, the second is the first with a
+    small linear change.
 
     """
-    launch = _launch(drive)
-    q, omega = (float(x[0]) for x in launch.state(np.array([launch.duration])))
-    first = drive.elements[0]
-    at = drive.terms(drive.follower(first, np.array([q])))
-    energy, time = 0.5 * float(at.inertia[0]) * omega ** 2, launch.duration
-    tables: dict[Element, Terms] = {}
-    stretches: list[Stretch] = []
-    turns: list[int] = []
-    for turn, whole in _elements_from(drive, q):
-        start = whole.start
-        while start < whole.end:
-            part = whole._replace(start=start)
-            done = _pass(drive, part, time, energy, tables, q + turn * TURN)
-            done = _cut_at_reversal(drive, done, tables)
-            stretches.append(done)
-            turns.append(turn)
-            start, energy, time = done.element.end, done.energy_at_end, done.time_at_end
-        if time >= duration:
-            break
-    return StartUp(launch, tuple(stretches), tuple(turns))
+    # on the way to finding that the shaft stalls, the search may leave all numbers behind
+    with np.errstate(all='ignore'):
+        launch = _launch(drive)
+        q, omega = (float(x[0]) for x in launch.state(np.array([launch.duration])))
+        course = Course.over(drive, tuple(_growing(drive, q)))
+        energy = 0.5 * float(course.terms.inertia[0, 0]) * omega ** 2
+        found = solved = _revolve(course, course.steady(0.5 * omega ** 2), energy)
+        stretches = list(found.stretches(launch.duration))
+        turns = [0] * len(stretches)
+        while stretches[-1].time_at_end < duration:
+            energy = float(found.starts[-1])
+            if turns[-1] == 0:
+                course = Course.over(drive, drive.elements)
+                guess = course.steady(0.5 * float(found.speeds[-1, -1]) ** 2)
+                found = solved = _revolve(course, guess, energy)
+            elif (near := solved.beside(energy)) is not None:
+                found = near
+            else:
+                course = solved.course.cut_at(solved.next_cuts(energy))
+                found = solved = _revolve(course, solved.guess(course, energy), energy)
+            more = found.stretches(stretches[-1].time_at_end)
+            stretches += more
+            turns += [turns[-1] + 1] * len(more)
+    count = max(1, sum(stretch.time < duration for stretch in stretches))
+    return StartUp(launch, tuple(stretches[:count]), tuple(turns[:count]))
 
 
-def _elements_from(drive: CamDrive, q: float) -> Iterator[tuple[int, Element]]:
-    """Give the elements of turn after turn, the first ones shortened and growing."""
+def _growing(drive: CamDrive, q: float) -> Iterator[Element]:
+    """Give the elements of the first turn behind the launch, the first ones short."""
     for element in drive.elements:
         start = max(element.start, q)
         while start < element.end:
-            end = min(element.end, max(_GROWTH * start, start + _LAUNCH_ANGLE))
-            end = element.end if element.end - end < _LAUNCH_ANGLE else end
-            yield 0, element._replace(start=start, end=end)
+            longest = _GROWTH * start
+            end = longest if longest < _NEARLY * element.end else element.end
+            yield element._replace(start=start, end=end)
             start = end
-    turn = 1
-    while True:
-        for element in drive.elements:
-            yield turn, element
-        turn += 1
+
+
+def _revolve(course: Course, guess: Array, energy: float) -> Passage:
+    """Solve a revolution, or what is left of the first."""
+    found = settle(course, guess, energy, lambda course: _march(course, energy))
+    if found is None:
+        raise _stall(course, energy)
+    return found
+
+
+def _march(course: Course, energy: float) -> Array:
+    """Find the energies at the Gauss points one element after the other."""
+    energies = []
+    for single in course.rows():
+        found = solve(single, single.steady(energy / float(single.terms.inertia[0, 0])), energy)
+        if found is None:
+            raise _stall(single, energy)
+        energies.append(found.energies[0])
+        energy = float(found.starts[-1])
+    return np.array(energies)
+
+
+def _stall(course: Course, energy: float) -> StallError:
+    speed = math.sqrt(2.0 * energy / float(course.terms.inertia[0, 0]))
+    return StallError(
+        f'the motor stalls at {course.elements[0].start / DEGREE:.1f} deg of the cam shaft, where '
+        f'{speed / RPM:.1f} rpm are left; take a stronger motor, a larger ratio or a larger '
+        'flywheel')
 
 
 def _launch(drive: CamDrive) -> Launch:
@@ -252,56 +270,3 @@ def _launch(drive: CamDrive) -> Launch:
             break
     omegas = duration * (rule.matrix @ alphas)
     return Launch(drive, duration, alphas, omegas, duration * (rule.matrix @ omegas))
-
-
-def _pass(drive: CamDrive, element: Element, time: float, energy: float,
-          tables: dict[Element, Terms], angle: float) -> Stretch:
-    """Solve one element from a given energy on."""
-    rule = gauss_rule(POINTS)
-    span = element.end - element.start
-    terms = tables.get(element)
-    if terms is None:
-        terms = drive.terms(drive.follower(element, element.start + span * rule.points))
-        tables[element] = terms
-    matrix = span * rule.matrix
-    energies = np.full(POINTS, energy)
-    eye = np.eye(POINTS)
-    for _ in range(_NEWTON_STEPS):
-        omega = np.sqrt(2.0 * energies / terms.inertia)
-        power = terms.force + terms.damping * omega + drive.motor_torque(omega)
-        slope = (terms.damping + drive.motor_slope(omega)) / (terms.inertia * omega)
-        change = np.linalg.solve(eye - matrix * slope, energy + matrix @ power - energies)
-        falling = float(np.max(-change / energies))
-        change *= min(1.0, 0.9 / falling) if falling > 0.0 else 1.0
-        energies = energies + change
-        if np.max(np.abs(change / energies)) < _CONVERGED:
-            break
-    else:
-        raise StallError(
-            f'the motor stalls at {element.start / TURN * 360.0:.1f} deg of the cam shaft, where '
-            f'{math.sqrt(2.0 * energy / float(terms.inertia[0])) / RPM:.1f} rpm are left; take a '
-            'stronger motor, a larger ratio or a larger flywheel')
-    omega = np.sqrt(2.0 * energies / terms.inertia)
-    power = terms.force + terms.damping * omega + drive.motor_torque(omega)
-    return Stretch(drive, element, time, energy, power, 1.0 / omega)
-
-
-def _cut_at_reversal(drive: CamDrive, done: Stretch, tables: dict[Element, Terms]) -> Stretch:
-    """Shorten a stretch to its first reversal of power, where Q has a kink."""
-    if drive.gearbox.efficiency == 1.0:
-        return done
-    whole, before = done.element, math.inf
-    for _ in range(_CUTTING_STEPS):
-        q, signs = done.motor_signs()
-        turns = np.flatnonzero(signs[:-1] * signs[1:] < 0.0)
-        if not turns.size:
-            return done
-        cut = done.reversal_between(q[turns[0]], q[turns[0] + 1])
-        if not whole.start + _LEAST_CUT < cut < whole.end - _LEAST_CUT:
-            return done
-        if abs(cut - before) < _PLACED:
-            return done
-        before = cut
-        done = _pass(drive, whole._replace(end=cut), done.time, done.energy, tables, cut)
-        tables.pop(done.element)
-    return done

@@ -9,19 +9,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-import math
 
 from cam_motion.drive.cam_drive import CamDrive, Element
 from cam_motion.drive.collocation import gauss_rule
+from cam_motion.drive.load import Follower
 from cam_motion.motion.piece import Array
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 _DENSE = 33  # points among which extremes are looked for before they are refined
-_NO_TORQUE = 1e-9  # share of the motor's torque in an element below which it counts as none
+_ROUNDS = 4  # each finds an extreme among as many points, sixteen times as close as before
+_SECANTS = 5  # from a thirtieth of an element on, these reach rounding
+_SAME = 1e-12  # share of a speed by which another is the same, rounded
+_EVEN = np.linspace(0.0, 1.0, _DENSE)
 
 
 @dataclass(frozen=True)
@@ -85,10 +87,8 @@ class Stretch:
             Speed of the cam shaft [rad/s].
 
         """
-        rule = gauss_rule(self.powers.size)
-        gained = self.span * (rule.row((q - self.element.start) / self.span) @ self.powers)
-        inertia = self.drive.terms(self.drive.follower(self.element, q)).inertia
-        speed: Array = np.sqrt(2.0 * (self.energy + gained) / inertia)
+        _, omega = sample((self,), (q - self.element.start) / self.span)
+        speed: Array = omega[0]
         return speed
 
     def times(self, q: Array) -> Array:
@@ -165,34 +165,16 @@ class Stretch:
         """
         return np.linspace(self.element.start, self.element.end, count)
 
-    def motor_signs(self) -> tuple[Array, Array]:
+    def place(self, speed: float, low: float, high: float) -> float:
         """
-        Tell where the motor drives and where it is driven.
-
-        Returns
-        -------
-        tuple[ndarray, ndarray]
-            Shaft angles [rad], and the sign of the motor's torque at them; angles at which it is
-            zero but for rounding, as at the ends of an element cut there, are left out.
-
-        """
-        at_points = self.drive.motor.torque(self.drive.gearbox.ratio / self.slowness)
-        if np.min(np.abs(at_points)) > np.max(np.abs(np.diff(at_points))):
-            # zero is farther away than a step between the points: no need to look closer
-            return self.dense(1), np.sign(at_points[:1])
-        q = self.dense()
-        torque = self.drive.motor.torque(self.drive.gearbox.ratio * self.omega(q))
-        clear = np.abs(torque) > _NO_TORQUE * np.max(np.abs(torque))
-        return q[clear], np.sign(torque[clear])
-
-    def reversal_between(self, low: float, high: float) -> float:
-        """
-        Find where the motor's torque is zero, by regula falsi to a few steps.
+        Find where the shaft passes a speed, by the secant method.
 
         Parameters
         ----------
+        speed : float
+            Speed of the cam shaft [rad/s].
         low, high : float
-            Shaft angles with torques of opposite sign [rad].
+            Shaft angles before and behind it [rad].
 
         Returns
         -------
@@ -200,28 +182,85 @@ class Stretch:
             Shaft angle [rad].
 
         """
-        ratio, torque = self.drive.gearbox.ratio, self.drive.motor.torque
         ends = np.array([low, high])
-        for _ in range(4):
-            at_low, at_high = torque(ratio * self.omega(ends))
+        for _ in range(_SECANTS):
+            at_low, at_high = self.omega(ends) - speed
             if at_low == at_high:
                 break
             better = ends[1] - at_high * (ends[1] - ends[0]) / (at_high - at_low)
-            ends = np.clip([ends[1], better], self.element.start, self.element.end)
+            ends = np.clip([ends[1], better], low, high)
         return float(ends[1])
 
 
-def least(stretches: Iterable[Stretch], value: Callable[[Stretch, Array], Array],
+def sample(stretches: Sequence[Stretch], x: Array) -> tuple[Follower, Array]:
+    """
+    Look up several stretches at once.
+
+    Parameters
+    ----------
+    stretches : Sequence[Stretch]
+        The n stretches, of one drive.
+    x : ndarray, shape (m,)
+        Places [-], from 0 at the beginning of each stretch to 1 at its end.
+
+    Returns
+    -------
+    tuple[Follower, ndarray], shape (n, m) each
+        Follower, and speed of the cam shaft [rad/s].
+
+    """
+    drive = stretches[0].drive
+    at = Follower(*map(np.array, zip(*(
+        drive.follower(s.element, s.element.start + s.span * x) for s in stretches))))
+    powers = np.array([s.span * s.powers for s in stretches])
+    energies = np.array([[s.energy] for s in stretches])
+    energies = energies + powers @ gauss_rule(powers.shape[1]).row(x).T
+    speed: Array = np.sqrt(2.0 * energies / drive.terms(at).inertia)
+    return at, speed
+
+
+def passing(stretches: Sequence[Stretch], speed: float) -> list[tuple[Stretch, float, bool]]:
+    """
+    Find where the shaft passes a speed.
+
+    Parameters
+    ----------
+    stretches : Sequence[Stretch]
+        Where to look.
+    speed : float
+        Speed of the cam shaft [rad/s].
+
+    Returns
+    -------
+    list[tuple[Stretch, float, bool]]
+        Stretch, shaft angle in it [rad], and whether upwards.
+
+    """
+    above = (sample(stretches, _EVEN)[1] - speed).ravel()
+    clear = np.flatnonzero(np.abs(above) > _SAME * speed)
+    up = above[clear] > 0.0
+    found = []
+    for k in np.flatnonzero(up[1:] != up[:-1]).tolist():
+        (before, first), (row, last) = divmod(int(clear[k]), _DENSE), divmod(
+            int(clear[k + 1]), _DENSE)
+        stretch = stretches[row]
+        q = stretch.dense()
+        angle = stretch.place(speed, q[first], q[last]) if before == row else float(q[0])
+        found.append((stretch, angle, bool(up[k + 1])))
+    return found
+
+
+def least(stretches: Sequence[Stretch], value: Callable[[Follower, Array], Array],
           sign: float = 1.0) -> float:
     """
     Find the least value of something over several stretches, steps taken from both sides.
 
     Parameters
     ----------
-    stretches : Iterable[Stretch]
+    stretches : Sequence[Stretch]
         Where to look.
-    value : Callable[[Stretch, ndarray], ndarray]
-        Gives the value at angles within a stretch.
+    value : Callable[[Follower, ndarray], ndarray]
+        Gives the value at followers and speeds of the cam shaft.
     sign : float
         -1 finds the greatest value instead.
 
@@ -231,15 +270,43 @@ def least(stretches: Iterable[Stretch], value: Callable[[Stretch, Array], Array]
         The value, refined between the points looked at.
 
     """
-    best = math.inf
-    for stretch in stretches:
-        q = stretch.dense()
-        values = sign * value(stretch, q)
-        low = int(np.argmin(values))
-        if values[low] < best and 0 < low < q.size - 1:
-            found = minimize_scalar(
-                lambda x, stretch=stretch: sign * float(value(stretch, np.array([x]))[0]),
-                bounds=(q[low - 1], q[low + 1]), method='bounded', options={'xatol': 1e-9})
-            best = min(best, float(found.fun))
+    dense = sign * value(*sample(stretches, _EVEN))
+    rows, lows = np.arange(len(stretches)), np.argmin(dense, axis=1)
+    lowest = dense[rows, lows]
+    around = np.maximum(dense[rows, np.maximum(lows - 1, 0)],
+                        dense[rows, np.minimum(lows + 1, _DENSE - 1)])
+    # a parabola dips less than a quarter of this between the points
+    reach = lowest - (around - lowest)
+    best = float(np.min(lowest))
+    for row in np.argsort(reach).tolist():
+        if reach[row] >= best:
+            break
+        x, low = _EVEN, int(lows[row])
+        for _ in range(_ROUNDS):
+            x = np.linspace(x[max(low - 1, 0)], x[min(low + 1, _DENSE - 1)], _DENSE)
+            values = sign * value(*sample(stretches[row:row + 1], x))[0]
+            low = int(np.argmin(values))
         best = min(best, float(values[low]))
     return sign * best
+
+
+def least_contact_force(stretches: Sequence[Stretch], base: float) -> float:
+    """
+    Find the least force between cam and roller, steps taken from both sides.
+
+    Parameters
+    ----------
+    stretches : Sequence[Stretch]
+        Where to look.
+    base : float
+        Distance of the roller's centre from the cam shaft at s = 0 [m].
+
+    Returns
+    -------
+    float
+        Force [N].
+
+    """
+    drive = stretches[0].drive
+    return least(stretches, lambda at, omega: drive.contact_force(
+        at, omega, drive.acceleration(at, omega), base))

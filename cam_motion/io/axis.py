@@ -9,19 +9,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 import math
 from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.io import parameters
-from cam_motion.io.parameters import check_values
+from cam_motion.io import axis_parameters
+from cam_motion.io.parameters import check_values, ParameterSpec
 from cam_motion.motion.diagram import Axis
 from cam_motion.motion.laws import make_law
-from cam_motion.motion.limits import Limits, QUANTITIES
+from cam_motion.motion.limits import Limits, QUANTITIES, SpeedBound
 from cam_motion.motion.profile import CamProfile, program_problems
 from cam_motion.motion.segment import Segment
-from cam_motion.units import DEGREE, rate_text, RPM
+from cam_motion.runtime.follower_settings import FollowerSettings
+from cam_motion.runtime.layout import Coupling, Layout
+from cam_motion.runtime.planning import At, Timing, TransitionError
+from cam_motion.runtime.ramp import RampLimits
+from cam_motion.units import DEGREE
 
 SHORTEST_DEG = 1e-6
 """Least span of a segment [deg]: with less, nothing is left of an angle but its rounding."""
@@ -29,13 +34,127 @@ SHORTEST_DEG = 1e-6
 LARGEST_LIFT = 1e15
 """Largest magnitude of a lift, in the unit of its axis."""
 
+ONLY_CAM = 'cam'
+"""Name of the cam of an axis that has no list of cams."""
+
 Values = Mapping[str, Any]
 """Parameters of one node by flat name."""
 
 
-def build_axis(name: str, given: Values) -> Axis:
+@dataclass(frozen=True)
+class CoupledAxis(Axis):
     """
-    Check the parameters of an axis and compile its cam.
+    An axis with its couplings to the shaft.
+
+    Attributes
+    ----------
+    layout : Layout
+        All its cams and how they are coupled; the `profile` is the first one in use.
+    settings : FollowerSettings
+        What it may, and how it engages, disengages, changes and resumes.
+    values : Mapping[str, Any]
+        Every parameter of the axis itself, checked.
+
+    """
+
+    layout: Layout = field(kw_only=True)
+    settings: FollowerSettings = field(kw_only=True)
+    values: Values = field(kw_only=True)
+
+    def bound_by(self, limits: Limits) -> SpeedBound | None:
+        """
+        Find the highest steady shaft speed within given limits, couplings included.
+
+        Parameters
+        ----------
+        limits : Limits
+            The limits.
+
+        Returns
+        -------
+        SpeedBound | None
+            The speed and what holds it there; None where nothing does.
+
+        """
+        return self.layout.speed_bound(limits)
+
+
+def axis_table(given: Values) -> tuple[ParameterSpec, ...]:
+    """
+    List the parameters of an axis, which depend on the cams it has.
+
+    Parameters
+    ----------
+    given : Mapping[str, Any]
+        Parameters by flat name.
+
+    Returns
+    -------
+    tuple[ParameterSpec, ...]
+        The table; of several cams each has its own part, below its name.
+
+    """
+    cams = names_in(given, 'cams')
+    if not cams:
+        return axis_parameters.CAM_AXIS
+    own = tuple(spec for spec in axis_parameters.CAM_AXIS if spec not in axis_parameters.CAM)
+    return own + tuple(replace(spec, name=f'{cam}.{spec.name}')
+                       for cam in dict.fromkeys(cams) for spec in axis_parameters.CAM)
+
+
+def names_in(given: Values, key: str) -> list[str]:
+    """
+    Read a list of names, whatever is given in its place.
+
+    Parameters
+    ----------
+    given : Mapping[str, Any]
+        Parameters by flat name.
+    key : str
+        Name of the list.
+
+    Returns
+    -------
+    list[str]
+        The names; empty where there is no list.
+
+    """
+    names = given.get(key)
+    return [n for n in names if isinstance(n, str)] if isinstance(names, (list, tuple)) else []
+
+
+def split_below(given: Values, names: Iterable[str],
+                ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """
+    Separate what stands below given names from the rest.
+
+    Parameters
+    ----------
+    given : Mapping[str, Any]
+        Parameters by flat name.
+    names : Iterable[str]
+        The names.
+
+    Returns
+    -------
+    tuple[dict[str, Any], dict[str, dict[str, Any]]]
+        The rest, and what stands below each name.
+
+    """
+    own: dict[str, Any] = {}
+    below: dict[str, dict[str, Any]] = {name: {} for name in names}
+    for key, value in given.items():
+        head, _, rest = key.partition('.')
+        if rest and head in below:
+            below[head][rest] = value
+        else:
+            own[key] = value
+    return own, below
+
+
+def build_axis(name: str, given: Values) -> CoupledAxis:
+    """
+    Check the parameters of an axis and compile its cams.
 
     Parameters
     ----------
@@ -46,7 +165,7 @@ def build_axis(name: str, given: Values) -> Axis:
 
     Returns
     -------
-    Axis
+    CoupledAxis
         The axis.
 
     Raises
@@ -55,22 +174,90 @@ def build_axis(name: str, given: Values) -> Axis:
         With every problem, paths relative to the axis.
 
     """
-    names = given.get('segments')
-    names = [n for n in names if isinstance(n, str)] if isinstance(names, (list, tuple)) else []
-    own, below = {}, {segment: {} for segment in names}  # type: ignore[var-annotated]
-    for key, value in given.items():
-        head, _, rest = key.partition('.')
-        if rest and head in below:
-            below[head][rest] = value
-        else:
-            own[key] = value
-    values, problems = check_values(parameters.CAM_AXIS, own)
+    names = names_in(given, 'cams')
+    problems = _twice('cams', names)
+    profiles: dict[str, CamProfile] = {}
+    couplings: dict[str, Coupling] = {}
+    if names:
+        own, below = split_below(given, names)
+        table = tuple(spec for spec in axis_parameters.CAM_AXIS if spec not in axis_parameters.CAM)
+        values, wrong = check_values(table, own)
+        problems += wrong
+        parts: dict[str, tuple[Values, str]] = {cam: (below[cam], cam) for cam in below}
+    else:
+        own, below = split_below(given, names_in(given, 'segments'))
+        values, wrong = check_values(axis_parameters.CAM_AXIS, own)
+        problems += wrong
+        parts = {ONLY_CAM: (given, '')}
+    for cam, (section, path) in parts.items():
+        try:
+            profiles[cam], couplings[cam] = _build_cam(section)
+        except ConfigurationError as error:
+            known = {problem.path for problem in problems}
+            problems += [p for problem in error.problems
+                         if (p := problem.below(path) if path else problem).path not in known]
+    active = tuple(values['active']) or tuple(parts)[:1]
+    problems += _twice('active', active) + [
+        Problem('active', cam, 'must name cams of this axis', 'known are: ' + ', '.join(parts))
+        for cam in active if cam not in parts]
+    if values['follows'] == name:
+        problems.append(Problem('follows', name, 'an axis cannot follow itself'))
+    limits, wrong = _limits(values)
+    problems += wrong
+    if not problems:
+        layout = Layout(profiles, couplings, active)
+        try:
+            layout.check_range(limits)
+        except TransitionError as error:
+            problems.append(Problem('limits', None, str(error)))
+    if problems:
+        raise ConfigurationError(problems)
+    return CoupledAxis(name, profiles[active[0]], values['unit'], limits, layout=layout,
+                       settings=_settings(values, limits), values=values)
+
+
+def _twice(key: str, names: Iterable[str]) -> list[Problem]:
+    names = list(names)
+    return [Problem(key, name, 'every name stands once')
+            for name in dict.fromkeys(names) if names.count(name) > 1]
+
+
+def _limits(values: Values) -> tuple[Limits, list[Problem]]:
+    try:
+        return Limits(*(values[f'limits.{name}'] for name in (
+            *QUANTITIES[1:], 'lowest', 'highest'))), []
+    except ConfigurationError as error:
+        return Limits(), list(error.problems)
+
+
+def _settings(values: Values, limits: Limits) -> FollowerSettings:
+    def timing(name: str) -> Timing:
+        return Timing(
+            At(values[f'{name}.at']), values[f'{name}.span_deg'] * DEGREE,
+            values[f'{name}.longest_deg'] * DEGREE, values.get(f'{name}.angle_deg', 0.0) * DEGREE)
+    return FollowerSettings(
+        limits, RampLimits(values['shaft_acceleration'], values['shaft_jerk']),
+        timing('engage'), timing('disengage'), timing('change'), timing('resume'),
+        master_relative=values['engage.master'] == 'relative',
+        slave_relative=values['engage.slave'] == 'relative',
+        start_position=values['start_position'], stop_position=values['disengage.position'])
+
+
+def _build_cam(given: Values) -> tuple[CamProfile, Coupling]:
+    """Compile one cam with its coupling; keys that belong to the axis are passed over."""
+    names = names_in(given, 'segments')
+    own, below = split_below(given, names)
+    known = {spec.name for spec in axis_parameters.CAM_AXIS} - {spec.name for spec in axis_parameters.CAM}
+    values, problems = check_values(
+        axis_parameters.CAM, {key: value for key, value in own.items() if key not in known})
     problems += [
         Problem('segments', name, 'every segment has a name of its own')
         for name in dict.fromkeys(names) if names.count(name) > 1
     ]
     if not names and values['segments'] == []:
         problems.append(Problem('segments', [], 'a cam needs at least one segment'))
+    if values['ratio'] == 0.0:
+        problems.append(Problem('ratio', 0.0, 'must not be zero', 'disengage the axis instead'))
     segments = []
     for segment in names:
         built, wrong = _build_segment(segment, below[segment])
@@ -80,13 +267,13 @@ def build_axis(name: str, given: Values) -> Axis:
     accumulate = values['cycle'] == 'accumulate'
     if problems and segments:
         # angles and lifts are looked at although a law or another parameter is wrong
-        known = {problem.path for problem in problems}
+        seen = {problem.path for problem in problems}
         problems += [problem for problem in program_problems(tuple(segments), accumulate)
-                     if problem.path not in known]
+                     if problem.path not in seen]
     if problems or not segments:
         raise ConfigurationError(problems)
-    limits = Limits(*(values[f'limits.{quantity}'] for quantity in QUANTITIES[1:]))
-    return Axis(name, CamProfile(segments, accumulate), values['unit'], limits)
+    return CamProfile(segments, accumulate), Coupling(
+        values['ratio'], values['phase_deg'] * DEGREE, values['scale'], values['offset'])
 
 
 def _span_problems(segments: list[Segment]) -> list[Problem]:
@@ -108,9 +295,9 @@ def _span_problems(segments: list[Segment]) -> list[Problem]:
 
 def _build_segment(name: str, given: Values) -> tuple[Segment, list[Problem]]:
     """Build a segment with a stand-in (NaN, any law) for whatever is wrong, and say what is."""
-    fixed = {spec.name for spec in parameters.SEGMENT}
+    fixed = {spec.name for spec in axis_parameters.SEGMENT}
     values, problems = check_values(
-        parameters.SEGMENT, {k: v for k, v in given.items() if k in fixed})
+        axis_parameters.SEGMENT, {k: v for k, v in given.items() if k in fixed})
     law = make_law('cubic')
     try:
         law = make_law(values['law'], **{k: v for k, v in given.items() if k not in fixed})
@@ -122,45 +309,3 @@ def _build_segment(name: str, given: Values) -> tuple[Segment, list[Problem]]:
     end_deg, lift = (
         math.nan if key in wrong else values[key] for key in ('end_deg', 'lift'))
     return Segment(name, law, end_deg, lift), problems
-
-
-def speed_problems(axis: Axis, omega: float) -> list[Problem]:
-    """
-    Check whether an axis keeps its limits at a steady shaft speed.
-
-    Parameters
-    ----------
-    axis : Axis
-        The axis.
-    omega : float
-        Speed of the shaft [rad/s].
-
-    Returns
-    -------
-    list[Problem]
-        One problem per limit that would break, with the figures.
-
-    """
-    problems = []
-    for order, quantity in enumerate(QUANTITIES[1:], start=1):
-        limit = axis.limits.of_order(order)
-        if limit is None:
-            continue
-        bound = Limits(**{quantity: limit}).highest_speed(axis.profile)
-        if bound is None or abs(omega) <= bound.omega * (1.0 + 1e-9):
-            continue
-        unit = rate_text(axis.unit, order)
-        where = f'segment {bound.segment} at {bound.at / DEGREE:.4g} deg'
-        if bound.omega == 0.0:
-            rule = f'the acceleration steps in {where}: no jerk limit can be met'
-            hint = 'take a law whose acceleration is continuous, or leave the jerk unlimited'
-        else:
-            # a product grows to infinity where a power would raise
-            needed = limit * math.prod([abs(omega) / bound.omega] * order)
-            rule = (f'at {abs(omega) / RPM:g} cycles/min {where} needs {needed:.6g} {unit}')
-            # cut, not rounded: the figure given must itself be allowed
-            most = math.floor(bound.omega / RPM * 100.0) / 100.0
-            hint = (f'run at most {most:.2f} cycles/min, raise the limit, or give '
-                    'the segment more angle or another law')
-        problems.append(Problem(f'{axis.name}.limits.{quantity}', limit, rule, hint))
-    return problems

@@ -17,7 +17,6 @@ from cam_motion.drive.cam_drive import CamDrive
 from cam_motion.drive.gearbox import Gearbox
 from cam_motion.drive.load import (
     Friction,
-    GRAVITY,
     Lever,
     Part,
     RotatingInertia,
@@ -26,60 +25,12 @@ from cam_motion.drive.load import (
 )
 from cam_motion.drive.motor import InductionMotor, KlossMotor
 from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.io.parameters import check_values, ParameterSpec, REQUIRED
+from cam_motion.io.axis import CoupledAxis, split_below
+from cam_motion.io.cam_drive_parameters import CAM_DRIVE, KIND, part_names, PARTS
+from cam_motion.io.parameters import check_values
 from cam_motion.motion.profile import CamProfile
+from cam_motion.runtime.layout import Coupling
 from cam_motion.units import DEGREE, RPM
-
-
-def _number(name: str, meaning: str, unit: str, default: Any = REQUIRED,
-            above: float | None = None, least: float | None = None, most: float | None = None,
-            ) -> ParameterSpec:
-    return ParameterSpec(name, 'double', default, meaning, unit, above, least, most)
-
-
-CAM_DRIVE = (
-    ParameterSpec('mode', 'string', 'line_shaft', 'What the drive does.', choices=('line_shaft',)),
-    ParameterSpec('axis', 'string', REQUIRED, 'Name of the axis whose cam loads the shaft.'),
-    _number('nominal_rpm', 'Speed the cam shaft is meant for.', 'rpm', above=0.0),
-    _number('base_radius', 'Base radius of the cam.', 'm', above=0.0),
-    _number('roller_radius', 'Radius of the roller.', 'm', 0.0, least=0.0),
-    _number('flywheel', 'Inertia of a flywheel on the motor shaft.', 'kg m²', 0.0, least=0.0),
-    _number('gearbox.ratio', 'Turns of the motor per turn of the cam shaft.', '', above=0.0),
-    _number('gearbox.efficiency', 'Efficiency of the gearbox.', '', 1.0, above=0.0, most=1.0),
-    _number('gearbox.inertia', 'Inertia of the gearbox at the cam shaft.', 'kg m²', 0.0,
-            least=0.0),
-    _number('motor.synchronous_rpm', 'Synchronous speed.', 'rpm', above=0.0),
-    _number('motor.rated_rpm', 'Rated speed.', 'rpm', None, above=0.0),
-    _number('motor.rated_torque', 'Rated torque; with rated_rpm it stands for the breakdown slip.',
-            'N m', None, above=0.0),
-    _number('motor.breakdown_torque', 'Breakdown torque.', 'N m', above=0.0),
-    _number('motor.breakdown_slip', 'Slip at breakdown.', '', None, above=0.0, most=1.0),
-    _number('motor.a', "Constant of document 004's torque curve; without a and b, Kloss' curve.",
-            '', None, above=0.0),
-    _number('motor.b', "Constant of document 004's torque curve.", '', None, above=0.0),
-    _number('motor.inertia', 'Inertia of the rotor.', 'kg m²', above=0.0),
-    ParameterSpec('load', 'string_list', REQUIRED, 'Names of the parts of the load.'),
-    ParameterSpec('autostart', 'bool', True, 'Whether the node starts itself.'),
-)
-
-_KIND = ParameterSpec('type', 'string', REQUIRED, 'Kind of the part.', choices=(
-    'inertia', 'mass', 'spring', 'friction', 'lever'))
-
-PARTS: dict[str, tuple[ParameterSpec, ...]] = {
-    'inertia': (_KIND, _number('inertia', 'Inertia on the cam shaft.', 'kg m²', least=0.0)),
-    'mass': (_KIND, _number('mass', 'Mass that moves with the follower.', 'kg', least=0.0),
-             _number('gravity', 'Free fall along the follower.', 'm/s²', GRAVITY)),
-    'spring': (_KIND, _number('stiffness', 'Stiffness.', 'N/m', least=0.0),
-               _number('preload', 'Compression at s = 0.', 'm', 0.0)),
-    'friction': (_KIND, _number('viscous', 'Viscous friction.', 'N s/m', 0.0, least=0.0),
-                 _number('coulomb', 'Coulomb friction.', 'N', 0.0, least=0.0)),
-    'lever': (_KIND, _number('inertia', 'Inertia about the bearing.', 'kg m²', least=0.0),
-              _number('arm', 'Length.', 'm', above=0.0),
-              _number('height', 'Height of the slider over the bearing at s = 0.', 'm'),
-              _number('moment', 'Moment against the lever.', 'N m', 0.0),
-              ParameterSpec('window_deg', 'double_list', [0.0, 360.0],
-                            'First and last shaft angle of the moment.', 'deg')),
-}
 
 
 @dataclass(frozen=True)
@@ -99,6 +50,10 @@ class CamDriveSettings:
         Distance of the roller's centre from the cam shaft at s = 0 [m].
     base_radius, roller_radius : float
         Their two summands [m].
+    brake_torque : float
+        Torque of the brake on the motor shaft [N m].
+    values : Mapping[str, Any]
+        Every parameter of the table, checked.
 
     """
 
@@ -108,6 +63,8 @@ class CamDriveSettings:
     rated_speed: float
     base_radius: float
     roller_radius: float
+    brake_torque: float
+    values: Mapping[str, Any]
 
     @property
     def base(self) -> float:
@@ -140,17 +97,13 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
         With every problem, paths relative to the node.
 
     """
-    names = given.get('load')
-    names = [n for n in names if isinstance(n, str)] if isinstance(names, (list, tuple)) else []
-    own: dict[str, Any] = {}
-    below: dict[str, dict[str, Any]] = {part: {} for part in names}
-    for key, value in given.items():
-        head, _, rest = key.partition('.')
-        if rest and head in below:
-            below[head][rest] = value
-        else:
-            own[key] = value
+    names = part_names(given)
+    own, below = split_below(given, names)
     values, problems = check_values(CAM_DRIVE, own)
+    taken = {spec.name.partition('.')[0] for spec in CAM_DRIVE}
+    problems += [
+        Problem('load', part, 'every part has a name of its own, which is no parameter')
+        for part in names if part in taken or (values['load'] or []).count(part) > 1]
     parts: list[Part] = []
     for part in names:
         try:
@@ -173,18 +126,49 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
         raise ConfigurationError(problems)
     motor, gearbox = made
     nominal = values['nominal_rpm'] * RPM
-    rated = values['motor.rated_rpm']
+    rated, brake = values['motor.rated_rpm'], values['brake.torque']
     return CamDriveSettings(
         name, values['axis'],
         CamDrive(profile, parts, motor, gearbox, values['flywheel'], nominal),
         gearbox.ratio * nominal if rated is None else rated * RPM,
-        values['base_radius'], values['roller_radius'])
+        values['base_radius'], values['roller_radius'],
+        motor.breakdown_torque if brake is None else brake, values)
+
+
+def cam_on_shaft(axis: CoupledAxis) -> CamProfile:
+    """
+    Give the cam by which an axis loads the shaft.
+
+    Parameters
+    ----------
+    axis : CoupledAxis
+        The axis.
+
+    Returns
+    -------
+    CamProfile
+        Its cam.
+
+    Raises
+    ------
+    ConfigurationError
+        When the axis is coupled as no cam on the shaft itself can be.
+
+    """
+    layout = axis.layout
+    if axis.values['follows'] != 'shaft' or len(layout.active) > 1 or any(
+            layout.couplings[cam] != Coupling() for cam in layout.active):
+        raise ConfigurationError([Problem(
+            'axis', axis.name, 'the cam of this drive sits on its shaft: one cam must follow the '
+            'shaft with ratio 1 and scale 1, without phase and offset',
+            'put the phase into its segments, or name another axis')])
+    return axis.profile
 
 
 def _build_part(given: Mapping[str, Any]) -> Part:
     kind = given.get('type')
     if kind not in PARTS:
-        raise ConfigurationError(check_values((_KIND,), {'type': kind} if kind else {})[1])
+        raise ConfigurationError(check_values((KIND,), {'type': kind} if kind else {})[1])
     values, problems = check_values(PARTS[kind], given)
     window = values.get('window_deg')
     if window is not None and not problems and not (

@@ -86,6 +86,38 @@ def read_sections(path: str | Path, any_namespace: bool = True) -> dict[str, Val
     return parse_sections(text, str(path), any_namespace)
 
 
+def parse_yaml(text: str, source: str) -> Any:
+    """
+    Parse YAML as the ROS parser reads it, and refuse a key that stands twice.
+
+    Parameters
+    ----------
+    text : str
+        YAML.
+    source : str
+        What to call it in errors.
+
+    Returns
+    -------
+    Any
+        Mappings, lists, texts and numbers.
+
+    Raises
+    ------
+    ConfigurationError
+        When it is no YAML.
+
+    """
+    try:
+        return yaml.load(text, Loader=_Loader)  # noqa: S506 (a SafeLoader by inheritance)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        # ValueError: dates such as 2026-13-45 and endless numbers; RecursionError: [[[[...
+        mark = getattr(error, 'problem_mark', None)
+        place = f'{source}:{mark.line + 1}:{mark.column + 1}' if mark else source
+        reason = getattr(error, 'problem', None) or str(error)
+        raise ConfigurationError([Problem(place, '', f'is no YAML: {reason}')]) from error
+
+
 def parse_sections(text: str, source: str = 'configuration', any_namespace: bool = True,
                    ) -> dict[str, Values]:
     """
@@ -111,14 +143,7 @@ def parse_sections(text: str, source: str = 'configuration', any_namespace: bool
         When it is no YAML or no parameter file.
 
     """
-    try:
-        tree = yaml.load(text, Loader=_Loader)  # noqa: S506 (a SafeLoader by inheritance)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        # ValueError: dates such as 2026-13-45 and endless numbers; RecursionError: [[[[...
-        mark = getattr(error, 'problem_mark', None)
-        place = f'{source}:{mark.line + 1}:{mark.column + 1}' if mark else source
-        reason = getattr(error, 'problem', None) or str(error)
-        raise ConfigurationError([Problem(place, '', f'is no YAML: {reason}')]) from error
+    tree = parse_yaml(text, source)
     if not isinstance(tree, Mapping) or not tree:
         raise ConfigurationError([Problem(source, tree, 'is no machine file', _HINT)])
     problems: list[Problem] = []
@@ -132,7 +157,7 @@ def parse_sections(text: str, source: str = 'configuration', any_namespace: bool
         extra = [name for name in body if name != 'ros__parameters']
         problems += [Problem(f'{key}.{name}', body[name], 'stands beside ros__parameters',
                              'move it below ros__parameters') for name in extra]
-        flat = _flatten(below)
+        flat = flatten(below)
         if key == _EVERY_NODE:
             shared = flat
         elif any_namespace or '/' not in key.removeprefix('/'):
@@ -149,12 +174,28 @@ def parse_sections(text: str, source: str = 'configuration', any_namespace: bool
     return {name: {**shared, **own} for name, own in sections.items()}
 
 
-def _flatten(tree: Mapping[Any, Any], prefix: str = '') -> dict[str, Any]:
+def flatten(tree: Mapping[Any, Any], prefix: str = '') -> dict[str, Any]:
+    """
+    Give parameters in levels their flat names.
+
+    Parameters
+    ----------
+    tree : Mapping[Any, Any]
+        Values, and mappings of such.
+    prefix : str
+        What their names begin with.
+
+    Returns
+    -------
+    dict[str, Any]
+        Values by flat name (``feed.end_deg``).
+
+    """
     flat: dict[str, Any] = {}
     for key, value in tree.items():
         name = f'{prefix}{key}'
         if isinstance(value, Mapping):
-            flat.update(_flatten(value, name + '.'))
+            flat.update(flatten(value, name + '.'))
         else:
             flat[name] = value
     return flat

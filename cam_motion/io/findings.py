@@ -102,7 +102,7 @@ def notes(report: Report) -> list[str]:
                 unit = rate_text(axis.axis.unit, order)
                 found.append(f'{name}: {QUANTITIES[order]} reached {peak:.6g} {unit}, beyond its '
                              f'limit of {limit:g} {unit}')
-    missing = [name for name in recording.machine.drives if name not in report.drives]
+    missing = [name for name in recording.machine.drive_names if name not in report.drives]
     found += [f'{name}: the bag has no states of it' for name in missing]
     return found
 

@@ -13,7 +13,11 @@ from typing import NamedTuple
 
 
 class Endpoint(NamedTuple):
-    """A topic or service of a node: which way, its name, type and meaning."""
+    """
+    A topic or service of a node: which way, its name, type and meaning.
+
+    A mode behind the name of the node says that the node has it in that mode only.
+    """
 
     node: str
     kind: str
@@ -39,12 +43,40 @@ INTERFACE = (
              'come to rest fast; stays stopped until reset'),
     Endpoint('master_shaft', 'serves', '~/reset', 'std_srvs/srv/Trigger',
              'acknowledge a quick stop'),
-    Endpoint('cam_axis', 'subscribes', 'shaft', _POINT, 'the shaft that the axis follows'),
+    Endpoint('master_shaft', 'subscribes', '<axis>/max_speed_cpm', 'std_msgs/msg/Float64',
+             'what each axis allows: the shaft obeys the lowest'),
+    Endpoint('cam_axis', 'subscribes', 'shaft', _POINT,
+             'the shaft that the axis follows, or <axis>/setpoint'),
     Endpoint('cam_axis', 'publishes', '~/setpoint', _POINT,
              'one per shaft point: [y], [ẏ], [ÿ]; time_from_start is copied'),
-    Endpoint('drive_sim', 'subscribes', '<axis>/setpoint', _POINT, 'the axis that it moves'),
+    Endpoint('cam_axis', 'publishes', '~/max_speed_cpm', 'std_msgs/msg/Float64',
+             'latched: the highest shaft speed that its limits allow now; inf: no limit'),
+    Endpoint('cam_axis', 'subscribes', 'format_change', 'std_msgs/msg/Float64',
+             'shaft angle [rad], never wrapped, from which on every axis with a staged format '
+             'goes over to it; NaN revokes'),
+    Endpoint('cam_axis', 'publishes', '~/format_change', 'std_msgs/msg/Float64',
+             'latched: the angle at which it will; NaN: nothing is scheduled'),
+    Endpoint('cam_axis', 'serves', '~/engage', 'std_srvs/srv/SetBool',
+             'true: onto the curve; false: to standstill; answers with the plan and its peaks'),
+    Endpoint('cam_axis', 'serves', '~/reset', 'std_srvs/srv/Trigger',
+             'acknowledge a stop and come back onto the curve; answers with the plan'),
+    Endpoint('drive_sim', 'subscribes', '<axis>/setpoint', _POINT,
+             'the axis that it moves; not with mode line_shaft'),
     Endpoint('drive_sim', 'publishes', '~/drive_state', _JOINTS,
-             'joints motor and load: position, velocity, effort (rad, rad/s, N m)'),
+             'joints motor and load, with mode line_shaft also shaft: position, velocity, effort '
+             '(rad, rad/s, N m)'),
+    Endpoint('drive_sim: servo', 'publishes', '~/actual', _POINT,
+             'one per setpoint: what the axis really does, [y], [ẏ], [ÿ]; time_from_start is '
+             'copied'),
+    Endpoint('drive_sim: line_shaft', 'publishes', 'shaft', _POINT,
+             'every tick, in the place of a master shaft'),
+    Endpoint('drive_sim: line_shaft', 'publishes', 'joint_states', _JOINTS, 'φ and ω for viewers'),
+    Endpoint('drive_sim: line_shaft', 'serves', '~/run', 'std_srvs/srv/SetBool',
+             'true: release the brake, switch the motor on; false: switch it off, and coast'),
+    Endpoint('drive_sim: line_shaft', 'serves', '~/quick_stop', 'std_srvs/srv/Trigger',
+             'motor off, brake on; stays stopped until reset'),
+    Endpoint('drive_sim: line_shaft', 'serves', '~/reset', 'std_srvs/srv/Trigger',
+             'acknowledge a quick stop; the brake holds until the next run'),
     Endpoint('all', 'publishes', '~/state', 'std_msgs/msg/String', 'latched: what the node does'),
     Endpoint('all', 'publishes', '/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray',
              'health and figures, once a second'),

@@ -9,16 +9,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from cam_motion.drive.inverse import FollowerDrive
+from cam_motion.drive.orbit import find_orbit, NoOrbitError
+from cam_motion.drive.servo_motor import ServoMotor
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import parameters
-from cam_motion.io.axis import build_axis, speed_problems, Values
-from cam_motion.io.cam_drive_config import build_cam_drive, CamDriveSettings
+from cam_motion.io.axis import build_axis, Values
+from cam_motion.io.axis_limits import in_cascade, speed_problems
+from cam_motion.io.cam_drive_config import build_cam_drive, cam_on_shaft, CamDriveSettings
+from cam_motion.io.interlocks import build_interlocks, judge, JudgedInterlock, line_values
 from cam_motion.io.parameters import check_values
+from cam_motion.io.servo_config import build_motor, build_servo, SERVO, ServoSettings
+from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO_DRIVE
 from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
@@ -50,6 +56,11 @@ class MasterSettings:
         """Set speed [rad/s]."""
         return float(self.values['speed_cpm']) * RPM
 
+    @property
+    def top_speed(self) -> float:
+        """Speed at which the axes must keep their limits [rad/s]: the set speed."""
+        return self.speed
+
     def shaft(self) -> Shaft:
         """
         Make the shaft.
@@ -69,6 +80,42 @@ class MasterSettings:
 
 
 @dataclass(frozen=True)
+class ShaftDrive:
+    """
+    A drive that turns the shaft itself, in the place of a master shaft.
+
+    Attributes
+    ----------
+    name : str
+        Name of its node.
+    drive : CamDriveSettings
+        The drive.
+
+    """
+
+    name: str
+    drive: CamDriveSettings
+
+    @property
+    def values(self) -> Values:
+        """Give every parameter, checked."""
+        return self.drive.values
+
+    @property
+    def speed(self) -> float:
+        """Give the speed that the drive is meant for [rad/s]."""
+        return self.drive.drive.nominal_speed
+
+    @property
+    def top_speed(self) -> float:
+        """Find the greatest speed of its periodic motion; the nominal one where it has none."""
+        try:
+            return find_orbit(self.drive.drive).speeds[1]
+        except NoOrbitError:
+            return self.speed
+
+
+@dataclass(frozen=True)
 class DriveSettings:
     """
     A drive and the axis that it moves.
@@ -80,13 +127,19 @@ class DriveSettings:
     axis : str
         Name of the axis.
     drive : FollowerDrive
-        The drive.
+        Gearbox and load, and all inertia on the motor shaft.
+    motor : ServoMotor | None
+        The motor with its limits, where it is given.
+    servo : ServoSettings | None
+        How it follows with mode `servo`; None for a drive that follows exactly.
 
     """
 
     name: str
     axis: str
     drive: FollowerDrive
+    motor: ServoMotor | None = None
+    servo: ServoSettings | None = None
 
 
 @dataclass(frozen=True)
@@ -96,21 +149,29 @@ class Machine:
 
     Attributes
     ----------
-    master : MasterSettings
-        The master shaft.
+    master : MasterSettings or ShaftDrive
+        What turns the shaft: the master shaft, or a drive in its place.
     diagram : TimingDiagram
         The axes.
     drives : Mapping[str, DriveSettings]
         The drives that follow an axis, by name.
     cam_drives : Mapping[str, CamDriveSettings]
         The drives that turn a cam shaft, by name.
+    interlocks : Mapping[str, JudgedInterlock]
+        What axes must never do at once, by name, and by how much that is kept.
 
     """
 
-    master: MasterSettings
+    master: MasterSettings | ShaftDrive
     diagram: TimingDiagram
     drives: Mapping[str, DriveSettings]
     cam_drives: Mapping[str, CamDriveSettings]
+    interlocks: Mapping[str, JudgedInterlock] = field(default_factory=dict)
+
+    @property
+    def drive_names(self) -> tuple[str, ...]:
+        """List all drives that tell their state, whatever their mode."""
+        return (*self.cam_drives, *self.drives)
 
 
 def build_master(name: str, given: Values) -> MasterSettings:
@@ -163,15 +224,21 @@ def build_drive(name: str, given: Values) -> DriveSettings:
         With every problem, paths relative to the node.
 
     """
-    values, problems = check_values(parameters.DRIVE_SIM, given)
+    follows_as_servo = given.get('mode') == SERVO
+    values, problems = check_values(SERVO_DRIVE if follows_as_servo else FOLLOW_DRIVE, given)
     if problems:
         raise ConfigurationError(problems)
+    motor = build_motor(values)
     drive = FollowerDrive(
         radius=values['radius'], gear_ratio=values['gear_ratio'],
-        efficiency=values['efficiency'], motor_inertia=values['motor_inertia'],
+        efficiency=values['efficiency'],
+        motor_inertia=values['motor_inertia'] + (0.0 if motor is None else motor.inertia),
         load_inertia=values['load_inertia'], resistance_force=values['resistance_force'],
         always_resists=values['resistance'] == 'always')
-    return DriveSettings(name, values['axis'], drive)
+    servo = None
+    if follows_as_servo and motor is not None:
+        servo = build_servo(values, drive, motor)
+    return DriveSettings(name, values['axis'], drive, motor, servo)
 
 
 def build_machine(sections: Mapping[str, Values]) -> Machine:
@@ -208,26 +275,35 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
             problems.extend(problem.below(name) for problem in error.problems)
             return None
 
-    line, wrong = check_values(parameters.LINE, sections.get('line', guess_line(sections)))
+    def turn(name: str, given: Values) -> CamDriveSettings:
+        axis = axes.get(str(given.get('axis')))
+        if axis is None:
+            return build_cam_drive(name, given, {})
+        try:
+            cam_on_shaft(axis)
+        except ConfigurationError as error:
+            problems.extend(problem.below(name) for problem in error.problems)
+        return build_cam_drive(name, given, {axis.name: axis.profile})
+
+    given = sections.get('line', guess_line(sections))
+    line, wrong = line_values(given)
     problems += [problem.below('line') for problem in wrong]
+    turning = shaft_drives(sections, line['drives'])
+    named = [*line['axes'], *line['drives'], *({line['master']} - set(turning))]
     problems += [
         Problem(f'line.{key}', name, 'every node has a name of its own')
         for key in ('axes', 'drives') for name in dict.fromkeys(line[key])
-        if [line['master'], *line['axes'], *line['drives']].count(name) > 1
+        if named.count(name) > 1
     ]
     if not line['axes'] and not wrong:
         problems.append(Problem('line.axes', [], 'a line needs at least one axis'))
-    if line['master'] in sections:
-        master = build(build_master, line['master'], 'master shaft')
-    else:
-        master = build_master(line['master'], {})
-    axes = {name: build(build_axis, name, 'axis') for name in dict.fromkeys(line['axes'])}
-    profiles = {name: axis.profile for name, axis in axes.items() if axis is not None}
+    problems += _rival_problems(sections, line['master'], turning)
+    axes = in_cascade({
+        name: build(build_axis, name, 'axis') for name in dict.fromkeys(line['axes'])}, problems)
     drives, cam_drives = {}, {}
     for name in dict.fromkeys(line['drives']):
-        if sections.get(name, {}).get('mode') == LINE_SHAFT:
-            cam_drives[name] = build(
-                lambda name, given: build_cam_drive(name, given, profiles), name, 'drive')
+        if name in turning:
+            cam_drives[name] = build(turn, name, 'drive')
         else:
             drives[name] = build(build_drive, name, 'drive')
     problems += [
@@ -236,12 +312,65 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
         for name in (*drives, *cam_drives)
         if isinstance(followed := sections.get(name, {}).get('axis'), str) and followed not in axes
     ]
-    if master is not None:
-        for axis in axes.values():
-            problems += [] if axis is None else speed_problems(axis, master.speed)
-    if problems:
+    master: MasterSettings | ShaftDrive | None
+    if turning:
+        found = cam_drives[turning[0]]
+        master = None if found is None else ShaftDrive(turning[0], found)
+    elif line['master'] in sections:
+        master = build(build_master, line['master'], 'master shaft')
+    else:
+        master = build_master(line['master'], {})
+    limited = [axis for axis in axes.values() if axis is not None
+               and any(axis.limits.of_order(order) for order in (1, 2, 3))]
+    if master is not None and limited:
+        speed = master.top_speed
+        problems += [problem for axis in limited for problem in speed_problems(axis, speed)]
+    interlocks, wrong = build_interlocks(given, axes)
+    problems += [problem.below('line') for problem in wrong]
+    sound = {name: axis for name, axis in axes.items() if axis is not None}
+    judged = judge({name: each for name, each in interlocks.items()
+                    if set(each.axes) <= set(sound)}, sound)
+    problems += [Problem(f'line.{name}', each.interlock.axes, each.verdict.text)
+                 for name, each in judged.items() if not each.verdict.kept]
+    if problems or master is None:
         raise ConfigurationError(problems)
-    return Machine(master, TimingDiagram(axes), drives, cam_drives)
+    return Machine(master, TimingDiagram(sound), drives, cam_drives, judged)
+
+
+def shaft_drives(sections: Mapping[str, Values], drives: Iterable[str]) -> list[str]:
+    """
+    Find the drives that turn the shaft themselves.
+
+    Parameters
+    ----------
+    sections : Mapping[str, Mapping[str, Any]]
+        Parameters of every node.
+    drives : Iterable[str]
+        Names of the drives of the line.
+
+    Returns
+    -------
+    list[str]
+        Names; more than one make no machine.
+
+    """
+    return [name for name in dict.fromkeys(drives)
+            if sections.get(name, {}).get('mode') == LINE_SHAFT]
+
+
+def _rival_problems(sections: Mapping[str, Values], master: str, turning: list[str],
+                    ) -> list[Problem]:
+    """Find whatever would turn the shaft beside the drive that does."""
+    problems = []
+    if len(turning) > 1:
+        problems.append(Problem(
+            'line.drives', turning, f'one drive with mode {LINE_SHAFT} turns the shaft, no more',
+            'let the others follow an axis, or make a line of each'))
+    if turning and master in sections and master not in turning:
+        problems.append(Problem(
+            master, 'a master shaft', f'{turning[0]} turns the shaft: nothing else may',
+            'leave this section out, or give the drive another mode'))
+    return problems
 
 
 def guess_line(sections: Mapping[str, Values]) -> Values:

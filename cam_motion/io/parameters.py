@@ -148,18 +148,49 @@ class ParameterSpec:
         return list(value) if self.kind.endswith('_list') else value
 
 
-_AUTOSTART = ParameterSpec(
+AUTOSTART = ParameterSpec(
     'autostart', 'bool', True, 'Whether the node configures and activates itself.')
 
-MASTER_SHAFT = (
-    ParameterSpec('speed_cpm', 'double', 60.0, 'Set speed; negative turns backwards.',
-                  'cycles/min'),
+SHAFT_TICKS = (
     ParameterSpec('rate_hz', 'double', 500.0, 'Shaft points published per second.', 'Hz',
                   least=1.0, most=5000.0),
     ParameterSpec('run_at_start', 'bool', True, 'Whether the shaft starts to turn when active.'),
     ParameterSpec('start_delay', 'double', 0.5,
                   'How long the shaft stands before it starts on its own, so that all nodes '
                   'have found each other.', 's', least=0.0, most=60.0),
+    ParameterSpec('max_catch_up', 'double', 0.05,
+                  'How late a tick is still carried out; later ones count as missed.', 's',
+                  least=0.0, most=10.0),
+    ParameterSpec('joint_states_hz', 'double', 50.0,
+                  'Rate of joint_states for viewers; 0 switches it off.', 'Hz',
+                  least=0.0, most=1000.0),
+)
+"""What every node has that turns the shaft."""
+
+MASTER_SHAFT = (
+    ParameterSpec('speed_cpm', 'double', 60.0, 'Set speed; negative turns backwards.',
+                  'cycles/min'),
+    *SHAFT_TICKS,
+    ParameterSpec('obey', 'string_list', [],
+                  'Axes whose max_speed_cpm the shaft does not exceed; empty: all of the line.'),
+    ParameterSpec('encoder.topic', 'string', '',
+                  'Topic of an encoder (sensor_msgs/JointState) that the shaft follows; empty: '
+                  'the shaft is virtual.'),
+    ParameterSpec('encoder.joint', 'string', '', 'Name of its joint; empty: the first.'),
+    ParameterSpec('encoder.ratio', 'double', 1.0, 'Turns of the shaft per turn of the encoder.'),
+    ParameterSpec('encoder.offset_deg', 'double', 0.0,
+                  'Angle of the shaft where the encoder is at zero.', 'deg'),
+    ParameterSpec('encoder.wraps', 'bool', True,
+                  'Whether the encoder starts over after each turn.'),
+    ParameterSpec('encoder.bandwidth', 'double', 10.0,
+                  'Bandwidth of the filter that finds speed and acceleration.', 'Hz',
+                  above=0.0, most=1000.0),
+    ParameterSpec('encoder.dead_time', 'double', 0.0,
+                  'By how much the shaft is extrapolated, to make up for the way of the '
+                  'measurement.', 's', least=0.0, most=1.0),
+    ParameterSpec('encoder.timeout', 'double', 0.2,
+                  'After this long without a measurement the shaft comes to rest.', 's',
+                  above=0.0, most=60.0),
     ParameterSpec('acceleration', 'double', 30.0, 'Largest acceleration of speed ramps.',
                   'rad/s²', above=0.0),
     ParameterSpec('jerk', 'double', 300.0, 'Largest jerk of speed ramps.', 'rad/s³', above=0.0),
@@ -167,44 +198,14 @@ MASTER_SHAFT = (
                   'Largest deceleration of the quick stop.', 'rad/s²', above=0.0),
     ParameterSpec('quick_stop_jerk', 'double', 3000.0, 'Largest jerk of the quick stop.',
                   'rad/s³', above=0.0),
-    ParameterSpec('max_catch_up', 'double', 0.05,
-                  'How late a tick is still carried out; later ones count as missed.', 's',
-                  least=0.0, most=10.0),
-    ParameterSpec('joint_states_hz', 'double', 50.0,
-                  'Rate of joint_states for viewers; 0 switches it off.', 'Hz',
-                  least=0.0, most=1000.0),
-    _AUTOSTART,
-)
-
-CAM_AXIS = (
-    ParameterSpec('unit', 'string', 'm', 'Unit of the position.'),
-    ParameterSpec('cycle', 'string', 'return',
-                  'Whether the axis comes back in each cycle or accumulates its stroke.',
-                  choices=('return', 'accumulate')),
-    ParameterSpec('segments', 'string_list', REQUIRED, 'Names of the segments, in order.'),
-    ParameterSpec('limits.velocity', 'double', None, 'Largest velocity of the axis.', 'unit/s',
-                  above=0.0),
-    ParameterSpec('limits.acceleration', 'double', None, 'Largest acceleration of the axis.',
-                  'unit/s²', above=0.0),
-    ParameterSpec('limits.jerk', 'double', None, 'Largest jerk of the axis.', 'unit/s³',
-                  above=0.0),
-    ParameterSpec('stop_acceleration', 'double', 150.0,
-                  'Deceleration of the shaft by which the axis stops on its own curve when it '
-                  'must stop while the shaft goes on.', 'rad/s²', above=0.0),
-    ParameterSpec('stop_jerk', 'double', 3000.0, 'Jerk of that stop.', 'rad/s³', above=0.0),
-    _AUTOSTART,
-)
-
-SEGMENT = (
-    ParameterSpec('law', 'string', 'dwell', 'Name of the motion law.'),
-    ParameterSpec('end_deg', 'double', REQUIRED,
-                  'Shaft angle at which the segment ends; the last one ends at 360.', 'deg'),
-    ParameterSpec('lift', 'double', 0.0, 'Change of position over the segment.', 'unit'),
+    AUTOSTART,
 )
 
 DRIVE_SIM = (
     ParameterSpec('mode', 'string', 'follow',
-                  'What the drive does: follow the setpoints of an axis.', choices=('follow',)),
+                  'What the drive does: follow the setpoints of an axis exactly, follow them as '
+                  'a servo drive can, or turn the shaft itself.',
+                  choices=('follow', 'servo', 'line_shaft')),
     ParameterSpec('axis', 'string', REQUIRED, 'Name of the axis whose setpoints it follows.'),
     ParameterSpec('radius', 'double', 1.0,
                   'Travel of the axis per radian of the load shaft (roller radius); '
@@ -222,7 +223,7 @@ DRIVE_SIM = (
                   'Whether the resistance acts against the motion only, or always (a pull '
                   'against the positive direction, also in the dwell).',
                   choices=('in_motion', 'always')),
-    _AUTOSTART,
+    AUTOSTART,
 )
 
 BAG_RECORDER = (
@@ -236,21 +237,17 @@ BAG_RECORDER = (
                   above=0.0, most=1.0),
     ParameterSpec('machine', 'string', '',
                   'Machine file to store in the bag; empty takes that of --params-file.'),
-    _AUTOSTART,
+    AUTOSTART,
 )
 
 LINE = (
     ParameterSpec('master', 'string', 'master_shaft', 'Name of the master shaft.'),
     ParameterSpec('axes', 'string_list', [], 'Names of the axes.'),
     ParameterSpec('drives', 'string_list', [], 'Names of the drives.'),
-    _AUTOSTART,
+    ParameterSpec('interlocks', 'string_list', [],
+                  'Names of the interlocks; what each of them is stands below its name.'),
+    AUTOSTART,
 )
-
-TABLES: dict[str, tuple[ParameterSpec, ...]] = {
-    'master_shaft': MASTER_SHAFT, 'cam_axis': CAM_AXIS, 'segment': SEGMENT,
-    'drive_sim': DRIVE_SIM, 'bag_recorder': BAG_RECORDER, 'line': LINE,
-}
-"""All tables by executable; ``segment`` is what stands below each segment of an axis."""
 
 _OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
 

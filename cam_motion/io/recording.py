@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from cam_motion.errors import CamMotionError, ConfigurationError, Problem
@@ -108,6 +108,8 @@ class Recording:
         Sizes of the bag's files by name [B].
     master_health : Mapping[str, str]
         Last diagnostic figures of the master shaft, as text by key.
+    actual : Mapping[str, Track]
+        What the axes really did, by servo drive.
 
     """
 
@@ -120,6 +122,7 @@ class Recording:
     counts: Mapping[str, int]
     files: Mapping[str, int]
     master_health: Mapping[str, str]
+    actual: Mapping[str, Track] = field(default_factory=dict)
 
 
 def read_recording(path: Path, config: Path | None = None) -> Recording:
@@ -161,13 +164,15 @@ def read_recording(path: Path, config: Path | None = None) -> Recording:
             for axis in machine.diagram.axes
         }
         drives = {
-            name: read_joint_states(reader, found) for name in machine.drives
+            name: read_joint_states(reader, found) for name in machine.drive_names
             if (found := topic(f'{name}/drive_state'))
         }
         return Recording(
             path, reader.incomplete, machine, shaft, setpoints, drives,
             {name: info.count for name, info in sorted(reader.topics.items())},
-            _files(path), _master_health(reader, machine.master.name))
+            _files(path), _master_health(reader, machine.master.name),
+            {name: _track(read_points(reader, found)) for name in machine.drives
+             if (found := topic(f'{name}/actual'))})
 
 
 def _machine(reader: BagReader, config: Path | None) -> Machine:

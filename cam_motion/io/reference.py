@@ -19,10 +19,28 @@ from pathlib import Path
 import re
 import sys
 
+from cam_motion.io.axis_parameters import CAM, CAM_AXIS, SEGMENT
+from cam_motion.io.cam_drive_parameters import CAM_DRIVE, PARTS
+from cam_motion.io.format_parameters import INTERLOCK, STAGED
 from cam_motion.io.interface import INTERFACE
-from cam_motion.io.parameters import ParameterSpec, REQUIRED, TABLES
+from cam_motion.io.parameters import (
+    BAG_RECORDER,
+    DRIVE_SIM,
+    LINE,
+    MASTER_SHAFT,
+    ParameterSpec,
+    REQUIRED,
+)
+from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO_DRIVE
 
 _BLOCK = re.compile(r'(<!-- generated: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL)
+
+
+TABLES: dict[str, tuple[ParameterSpec, ...]] = {
+    'master_shaft': MASTER_SHAFT, 'cam_axis': CAM_AXIS, 'cam': CAM, 'segment': SEGMENT,
+    'drive_sim': DRIVE_SIM, 'bag_recorder': BAG_RECORDER, 'line': LINE,
+}
+"""All tables by executable; ``segment`` is what stands below each segment of an axis."""
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -55,10 +73,19 @@ def parameter_tables() -> str:
         Markdown.
 
     """
+    parts = {f'below a part of the load, type `{kind}`': [
+        spec for spec in table if spec.name != 'type'] for kind, table in PARTS.items()}
+    titled = {
+        **{_title(name): table for name, table in TABLES.items()},
+        'below each interlock of a `line`': INTERLOCK,
+        '`cam_axis` while it runs, for a change of format': STAGED,
+        '`drive_sim`': FOLLOW_DRIVE,
+        '`drive_sim` with `mode: servo`': SERVO_DRIVE,
+        '`drive_sim` with `mode: line_shaft`': CAM_DRIVE, **parts}
     return '\n'.join(
-        f'**{_title(name)}**\n\n' + _table(
+        f'**{title}**\n\n' + _table(
             ('parameter', 'default', 'unit', 'what it does'), map(_row, table))
-        for name, table in TABLES.items())
+        for title, table in titled.items())
 
 
 def _title(name: str) -> str:

@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from cam_motion.io.bag import JointStateSeries
@@ -61,6 +61,9 @@ class DriveReport:
         Largest magnitude of the motor's speed [rad/s].
     motor_speed, motor_torque : ndarray, shape (n,)
         All states [rad/s, N m].
+    following_error : float | None
+        Largest magnitude of set minus actual position [unit]; None where no actual positions
+        were recorded.
 
     """
 
@@ -70,6 +73,7 @@ class DriveReport:
     peak_speed: float
     motor_speed: Array
     motor_torque: Array
+    following_error: float | None = None
 
 
 @dataclass(frozen=True)
@@ -133,7 +137,24 @@ def make_report(recording: Recording) -> Report:
         float(np.max(np.abs(shaft.velocity))),
         {name: compare_axis(recording.machine.diagram.axes[name], shaft, setpoints)
          for name, setpoints in recording.setpoints.items() if setpoints is not None},
-        {name: drive_report(states) for name, states in recording.drives.items()})
+        {name: replace(drive_report(states), following_error=_following_error(recording, name))
+         for name, states in recording.drives.items()})
+
+
+def _following_error(recording: Recording, drive: str) -> float | None:
+    """Compare set and actual positions of the same instants; None where there are none."""
+    actual = recording.actual.get(drive)
+    if actual is None:
+        return None
+    wanted = recording.setpoints.get(recording.machine.drives[drive].axis)
+    if wanted is None:
+        return None
+    worst = []
+    for run in np.unique(actual.run):  # the time base may begin anew
+        set_to, real = (track.chosen(track.run == run) for track in (wanted, actual))
+        _, at, there = np.intersect1d(set_to.time_ns, real.time_ns, return_indices=True)
+        worst += list(np.abs(set_to.position[at] - real.position[there]))
+    return float(np.max(worst)) if worst else None
 
 
 def tick_figures(

@@ -73,11 +73,13 @@ def _axis(axis: AxisReport) -> dict[str, Any]:
 
 
 def _drive(drive: DriveReport) -> dict[str, Any]:
+    followed = {} if drive.following_error is None else {
+        'peak_following_error': finite(drive.following_error)}
     return {
         'states': drive.states,
         'peak_torque': finite(drive.peak_torque),
         'rms_torque': finite(drive.rms_torque),
-        'peak_speed_rpm': finite(drive.peak_speed / RPM),
+        'peak_speed_rpm': finite(drive.peak_speed / RPM), **followed,
     }
 
 

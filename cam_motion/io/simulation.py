@@ -15,11 +15,14 @@ from typing import Any
 from cam_motion.drive.cycle import cycle_figures
 from cam_motion.drive.document_004 import document_metrics
 from cam_motion.drive.orbit import find_orbit, NoOrbitError, Orbit
+from cam_motion.drive.servo_cycle import limit_figures, servo_cycle, ServoCycle
 from cam_motion.drive.start_up import StallError, start_up, StartUp
+from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.machine import DriveSettings, Machine
+from cam_motion.io.summary_data import margins_as_data
+from cam_motion.runtime.ticks import NANOSECONDS
 from cam_motion.units import RPM
-import numpy as np
 
 START_UP = 3.0
 """How long a start-up is followed, as the document does [s]."""
@@ -53,22 +56,21 @@ def simulate(machine: Machine, document: bool = True, tell: Progress = lambda _:
     ------
     NoOrbitError, StallError
         When a motor cannot carry its load.
+    ConfigurationError
+        When a drive follows an axis, and the set speed is 0.
 
     """
     results: dict[str, dict[str, Any]] = {}
     for name, settings in machine.drives.items():
-        tell(f'{name}: one cycle')
+        tell(f'{name}: one cycle' if settings.servo is None else f'{name}: until cycles repeat')
         results[name] = _cycle(machine, settings)
     for name, cam_drive in machine.cam_drives.items():
         try:
             tell(f'{name}: periodic motion')
-            # on the way to finding that there is none, the search may leave all numbers behind
-            with np.errstate(all='ignore'):
-                orbit = find_orbit(cam_drive.drive)
+            orbit = find_orbit(cam_drive.drive)
             results[name] = {'orbit': orbit_figures(cam_drive, orbit)}
             tell(f'{name}: start-up')
-            with np.errstate(all='ignore'):
-                run = start_up(cam_drive.drive, START_UP)
+            run = start_up(cam_drive.drive, START_UP)
         except (NoOrbitError, StallError) as error:
             raise type(error)(f'{name}: {error}') from error
         results[name]['start_up'] = start_up_figures(cam_drive, orbit, run)
@@ -79,14 +81,61 @@ def simulate(machine: Machine, document: bool = True, tell: Progress = lambda _:
 
 
 def _cycle(machine: Machine, settings: DriveSettings) -> dict[str, Any]:
+    if machine.master.speed == 0.0:
+        raise ConfigurationError([Problem(
+            f'{machine.master.name}.speed_cpm', 0.0, 'there is no cycle without a speed',
+            'give the speed at which the drives are to be simulated')])
     profile = machine.diagram.axes[settings.axis].profile
     figures = cycle_figures(settings.drive, profile, machine.master.speed)
-    return {
+    found: dict[str, Any] = {
         'peak_torque': figures.peak_torque, 'rms_torque': figures.rms_torque,
         'peak_speed_rpm': figures.peak_speed / RPM,
         'regenerated_energy_per_cycle': figures.regenerated_energy,
         'motor_work_per_cycle': figures.motor_energy, 'inertia_ratio': figures.inertia_ratio,
     }
+    motor = settings.motor
+    if motor is not None:
+        limits = limit_figures(settings.drive, motor, profile, machine.master.speed)
+        found |= margins_as_data(limits)
+        if motor.torque_constant is not None:
+            found |= {'peak_current': motor.current(figures.peak_torque),
+                      'rms_current': motor.current(figures.rms_torque)}
+    cycle = live_cycle(machine, settings)
+    if cycle is not None:
+        tally = cycle.tally
+        found['servo'] = {
+            'peak_following_error': tally.peak_error, 'rms_following_error': tally.rms_error,
+            'saturated_s_per_cycle': tally.saturated_ns / NANOSECONDS,
+            'saturations_per_cycle': tally.saturations, 'catches_up': cycle.catches_up,
+            'peak_torque': tally.peak_torque, 'rms_torque': tally.rms_torque,
+            'peak_speed_rpm': tally.peak_speed / RPM,
+            'regenerated_energy_per_cycle': tally.regenerated_energy,
+            'motor_work_per_cycle': tally.motor_work}
+    return found
+
+
+def live_cycle(machine: Machine, settings: DriveSettings) -> ServoCycle | None:
+    """
+    Drive an axis in cycles at the set speed, with setpoints at the rate of the shaft.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    settings : DriveSettings
+        The drive.
+
+    Returns
+    -------
+    ServoCycle | None
+        The cycle; None for a drive that is no servo drive.
+
+    """
+    if settings.servo is None:
+        return None
+    return servo_cycle(
+        settings.servo.axis(settings.drive), machine.diagram.axes[settings.axis].profile,
+        machine.master.speed, machine.master.values['rate_hz'])
 
 
 def orbit_figures(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:

@@ -10,13 +10,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from cam_motion.drive.servo_cycle import limit_figures, LimitFigures
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import parameters
 from cam_motion.io.axis import build_axis, Values
-from cam_motion.io.machine import build_machine, guess_line
+from cam_motion.io.cam_drive_parameters import CAM_DRIVE
+from cam_motion.io.interlocks import JudgedInterlock, line_values
+from cam_motion.io.machine import build_machine, guess_line, Machine, shaft_drives
 from cam_motion.io.parameters import check_values
 from cam_motion.motion.diagram import Axis, TimingDiagram
 from cam_motion.motion.limits import QUANTITIES, SpeedBound
@@ -88,12 +91,18 @@ class CheckSummary:
         Shaft speed for which the physical figures hold [cycles/min]; None if it is unknown.
     axes : Mapping[str, AxisSummary]
         The axes that could be built, in the order of the line.
+    margins : Mapping[str, LimitFigures]
+        What the drives with a given motor leave of its limits, where the machine is sound.
+    interlocks : Mapping[str, JudgedInterlock]
+        By how much the interlocks are kept, likewise.
 
     """
 
     problems: tuple[Problem, ...]
     speed_cpm: float | None
     axes: Mapping[str, AxisSummary]
+    margins: Mapping[str, LimitFigures] = field(default_factory=dict)
+    interlocks: Mapping[str, JudgedInterlock] = field(default_factory=dict)
 
     @property
     def line_bound(self) -> tuple[str, SpeedBound] | None:
@@ -118,23 +127,46 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
         All problems, and the figures of every axis that is sound in itself.
 
     """
-    if speed_cpm is not None:
+    line, turning = _line(sections), turning_drive(sections)
+    if speed_cpm is not None and not turning:
         sections = with_speed(sections, speed_cpm)
     problems: tuple[Problem, ...] = ()
+    margins: Mapping[str, LimitFigures] = {}
+    interlocks: Mapping[str, JudgedInterlock] = {}
     try:
-        build_machine(sections)
+        machine = build_machine(sections)
+        margins, interlocks = _margins(machine), machine.interlocks
     except ConfigurationError as error:
         problems = error.problems
-    line = _line(sections)
-    master, _ = check_values(parameters.MASTER_SHAFT, sections.get(line['master'], {}))
+    if speed_cpm is None:
+        speed_cpm = _set_speed(sections, line['master'], turning)
     axes = {}
     for name in line['axes'] or guess_line(sections)['axes']:
         try:
             axes[name] = summarise_axis(
-                build_axis(name, sections.get(name, {})), master['speed_cpm'] * RPM)
+                build_axis(name, sections.get(name, {})), speed_cpm * RPM)
         except ConfigurationError:
             continue  # its problems are among those above
-    return CheckSummary(problems, master['speed_cpm'], axes)
+    return CheckSummary(problems, speed_cpm, axes, margins, interlocks)
+
+
+def _margins(machine: Machine) -> dict[str, LimitFigures]:
+    """Compare the drives that have a motor with its limits, at the set speed."""
+    omega = machine.master.speed
+    return {
+        name: limit_figures(
+            drive.drive, drive.motor, machine.diagram.axes[drive.axis].profile, omega)
+        for name, drive in machine.drives.items() if drive.motor is not None and omega}
+
+
+def _set_speed(sections: Mapping[str, Values], master: str, turning: str) -> float:
+    """Read the set speed of a line, nominal where a drive turns the shaft [cycles/min]."""
+    if turning:
+        nominal, _ = check_values(CAM_DRIVE, sections[turning])
+        if nominal['nominal_rpm'] is not None:
+            return float(nominal['nominal_rpm'])
+    values, _ = check_values(parameters.MASTER_SHAFT, sections.get(master, {}))
+    return float(values['speed_cpm'])
 
 
 def with_speed(sections: Mapping[str, Values], speed_cpm: float) -> dict[str, Values]:
@@ -153,13 +185,40 @@ def with_speed(sections: Mapping[str, Values], speed_cpm: float) -> dict[str, Va
     dict[str, Mapping[str, Any]]
         The configuration, the set speed of its master replaced.
 
+    Raises
+    ------
+    ConfigurationError
+        When a drive turns the shaft: no setting says how fast.
+
     """
     master = _line(sections)['master']
+    if turning := turning_drive(sections):
+        raise ConfigurationError([Problem(
+            'speed_cpm', speed_cpm, f'{turning} turns the shaft: its motor and its load make '
+            'the speed', 'give it another motor.synchronous_rpm or gearbox.ratio')])
     return {**sections, master: {**sections.get(master, {}), 'speed_cpm': speed_cpm}}
 
 
+def turning_drive(sections: Mapping[str, Values]) -> str:
+    """
+    Find the drive that turns the shaft itself.
+
+    Parameters
+    ----------
+    sections : Mapping[str, Mapping[str, Any]]
+        Parameters of every node.
+
+    Returns
+    -------
+    str
+        Its name; empty where a master shaft turns it.
+
+    """
+    return next(iter(shaft_drives(sections, _line(sections)['drives'])), '')
+
+
 def _line(sections: Mapping[str, Values]) -> dict[str, Any]:
-    line, _ = check_values(parameters.LINE, sections.get('line', guess_line(sections)))
+    line, _ = line_values(sections.get('line', guess_line(sections)))
     return line
 
 

@@ -11,10 +11,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from cam_motion.drive.servo_cycle import LimitFigures
 from cam_motion.errors import Problem
+from cam_motion.io.interlocks import JudgedInterlock
 from cam_motion.io.plain import finite, plain
 from cam_motion.io.summary import AxisSummary, bound_text, CheckSummary, SegmentSummary
 from cam_motion.motion.limits import QUANTITIES
+from cam_motion.runtime.interlock import Windows
 from cam_motion.units import DEGREE, RPM
 
 
@@ -42,6 +45,55 @@ def check_as_data(check: CheckSummary) -> dict[str, Any]:
             'axis': line[0] if line else None,
         },
         'axes': {name: _axis_as_data(axis) for name, axis in check.axes.items()},
+        'drives': {name: margins_as_data(margins) for name, margins in check.margins.items()},
+        'interlocks': {name: judged_as_data(each) for name, each in check.interlocks.items()},
+    }
+
+
+def judged_as_data(judged: JudgedInterlock) -> dict[str, Any]:
+    """
+    Turn a judged interlock into plain data.
+
+    Parameters
+    ----------
+    judged : JudgedInterlock
+        The interlock, and by how much it is kept.
+
+    Returns
+    -------
+    dict[str, Any]
+        Its axes, whether it is kept, the least margin, in degrees between windows, and where.
+
+    """
+    verdict = judged.verdict
+    angle = isinstance(judged.interlock, Windows)
+    return {
+        'axes': list(judged.interlock.axes), 'kept': verdict.kept,
+        'margin_deg' if angle else 'margin': finite(verdict.margin / (DEGREE if angle else 1.0)),
+        'at_deg': verdict.at / DEGREE, 'text': verdict.text,
+    }
+
+
+def margins_as_data(margins: LimitFigures) -> dict[str, float]:
+    """
+    Turn what a drive leaves of its motor's limits into plain data.
+
+    Parameters
+    ----------
+    margins : LimitFigures
+        The figures.
+
+    Returns
+    -------
+    dict[str, float]
+        The same, speeds in rpm.
+
+    """
+    return {
+        'peak_torque_margin': margins.peak_torque_margin,
+        'rms_torque_margin': margins.rms_torque_margin,
+        'speed_margin_rpm': margins.speed_margin / RPM,
+        'mean_speed_rpm': margins.mean_speed / RPM,
     }
 
 

@@ -39,10 +39,27 @@ class Axis:
     unit: str = 'm'
     limits: Limits = field(default_factory=Limits)
 
+    def bound_by(self, limits: Limits) -> SpeedBound | None:
+        """
+        Find the highest steady shaft speed within given limits.
+
+        Parameters
+        ----------
+        limits : Limits
+            The limits.
+
+        Returns
+        -------
+        SpeedBound | None
+            The speed and what holds it there; None where nothing does.
+
+        """
+        return limits.highest_speed(self.profile)
+
     @property
     def speed_bound(self) -> SpeedBound | None:
         """Find the highest steady shaft speed within the limits, and what holds it there."""
-        return self.limits.highest_speed(self.profile)
+        return self.bound_by(self.limits)
 
 
 @dataclass(frozen=True)

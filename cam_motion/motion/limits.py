@@ -72,7 +72,7 @@ class Limits:
             for name, value in rates.items()
             if value is not None and not (math.isfinite(value) and value > 0.0)
         ]
-        low, high = self.range
+        low, high = self.positions
         if not low < high:
             problems.append(Problem(
                 'limits.highest', self.highest, f'must lie above limits.lowest, {self.lowest}'))
@@ -80,7 +80,7 @@ class Limits:
             raise ConfigurationError(problems)
 
     @property
-    def range(self) -> tuple[float, float]:
+    def positions(self) -> tuple[float, float]:
         """Range of positions, infinite where there is no limit."""
         return (-math.inf if self.lowest is None else self.lowest,
                 math.inf if self.highest is None else self.highest)

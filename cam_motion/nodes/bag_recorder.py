@@ -24,8 +24,8 @@ from cam_motion.nodes.line_topics import LineTopic, topics_of
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.parameters import machine_files
 from cam_motion.nodes.runner import run
-from cam_motion.nodes.shaft_watch import ShaftWatch
 from cam_motion.nodes.wire import unpack_point
+from cam_motion.runtime.watchdog import ShaftWatch
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
@@ -104,7 +104,7 @@ class BagRecorder(ManagedNode):
         except BagError as error:
             raise ConfigurationError([
                 Problem('output', self._settings['output'], str(error))]) from error
-        self._watch = ShaftWatch()
+        self._watch = ShaftWatch(_SILENCE)
         self._shaft_topic = self.resolve_topic_name('shaft')
         self._last_shaft: bytes | None = None
         self._last_message = self.steady_now()
@@ -149,7 +149,9 @@ class BagRecorder(ManagedNode):
             return True
         point = unpack_point(self._last_shaft) if self._last_shaft else None
         if point is not None:
-            self._watch.note(point)
+            if not self._watch.note(point, now):
+                self._watch.forget()  # another shaft, or the same one from its beginning
+                self._watch.note(point, now)
         # a machine that goes on was not asked to stop: only the recording was
         return not self._watch.at_rest and self._watch.goes_on(now)
 

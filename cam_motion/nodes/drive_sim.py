@@ -5,34 +5,37 @@
 # writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
-"""A drive that follows an axis: what torque and speed its motor and load shaft see."""
+"""A simulated drive: it follows an axis, or turns the shaft that all axes follow."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import sys
 from typing import Any
 
-from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.io.machine import build_drive, LINE_SHAFT
-from cam_motion.io.parameters import DRIVE_SIM
+from cam_motion.io.machine import LINE_SHAFT
+from cam_motion.io.parameters import ParameterSpec
+from cam_motion.io.servo_config import SERVO
 from cam_motion.nodes import diagnostics
+from cam_motion.nodes.drive_mode import DriveMode
+from cam_motion.nodes.follow_mode import FollowMode
+from cam_motion.nodes.line_shaft_mode import LineShaftMode
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.qos import SETPOINTS
+from cam_motion.nodes.parameters import values_of
 from cam_motion.nodes.runner import run
-from cam_motion.nodes.wire import JointStateCodec, Point, unpack_point
-from cam_motion.runtime.ticks import NANOSECONDS
-from cam_motion.units import RPM
-from rclpy.publisher import Publisher
-from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectoryPoint
+from cam_motion.nodes.servo_mode import ServoMode
+from cam_motion.nodes.shaft_ticker import Listener
+from cam_motion.runtime.point import Point
 
-JOINTS = ('motor', 'load')
+MODES: dict[str, type[DriveMode]] = {
+    'follow': FollowMode, SERVO: ServoMode, LINE_SHAFT: LineShaftMode,
+}
+"""What a drive can do, by the value of its parameter ``mode``."""
 
 
 class DriveSim(ManagedNode):
     """
-    Publishes position, speed and torque of motor and load for every setpoint of an axis.
+    Publishes position, speed and torque of motor and load, in the mode that it is given.
 
     Parameters
     ----------
@@ -46,13 +49,47 @@ class DriveSim(ManagedNode):
 
     """
 
-    TABLE = DRIVE_SIM
-
     def __init__(self, name: str = 'drive_sim', own_process: bool = True, **options: Any) -> None:
-        """Declare the parameters."""
-        super().__init__(name, **options)
+        """Declare the parameters of the mode."""
         self._own_process = own_process
-        self._states: Publisher | None = None
+        self._mode: DriveMode | None = None
+        self.listeners: list[Listener] = []
+        """Called with every point of the shaft, where the drive turns it: axes of the process."""
+        self.section: Callable[[str], Mapping[str, Any]] | None = None
+        """Gives the parameters of another node of the process; None in one of its own."""
+        super().__init__(name, **options)
+
+    @property
+    def kind(self) -> type[DriveMode]:
+        """Look up what the parameter ``mode`` asks for; what is no mode counts as left out."""
+        given = values_of(self).get('mode')
+        return MODES.get(given if isinstance(given, str) else '', FollowMode)
+
+    @property
+    def table(self) -> tuple[ParameterSpec, ...]:
+        """List the parameters, which depend on the mode."""
+        return self.kind.table(values_of(self))
+
+    def refuse_change(self, name: str, value: Any) -> str:
+        """
+        Refuse another mode: other parameters would go with it.
+
+        Parameters
+        ----------
+        name : str
+            Name of the parameter.
+        value : Any
+            The value.
+
+        Returns
+        -------
+        str
+            The reason, empty to accept.
+
+        """
+        if name == 'mode' and MODES.get(value) is not self.kind:
+            return 'the mode is chosen when the node is started: its parameters depend on it'
+        return ''
 
     def configure(self, values: dict[str, Any]) -> None:
         """
@@ -64,33 +101,21 @@ class DriveSim(ManagedNode):
             All parameters by flat name.
 
         """
-        if values.get('mode') == LINE_SHAFT:
-            raise ConfigurationError([Problem(
-                'mode', LINE_SHAFT, 'this node follows an axis, it does not turn the shaft yet',
-                'cam_motion simulate computes the drive')])
-        settings = build_drive(self.get_name(), values)
-        self._axis = settings.axis
-        self._drive = settings.drive
-        self._codec = JointStateCodec(JOINTS, with_effort=True)
-        self._epoch_ns: int | None = None  # node time at which the machine's time base began
-        self._answered = 0
-        self._refused = 0
-        self._peak_torque = 0.0
-        self._states = self.make_publisher(JointState, '~/drive_state', SETPOINTS)
-        if self._own_process:
-            self.make_subscription(
-                JointTrajectoryPoint, f'{self._axis}/setpoint', self._on_setpoint, SETPOINTS,
-                raw=True)
+        self._mode = self.kind(self, self._own_process)
+        self._mode.listeners = self.listeners
+        self._mode.section = self.section
+        self._mode.configure(values)
 
     def cleanup(self) -> None:
-        """Drop the topics."""
+        """Drop the topics and the mode."""
+        mode, self._mode = self._mode, None
+        if mode is not None:
+            mode.cleanup()
         super().cleanup()
-        self._states = None
 
     def activate(self) -> None:
-        """Wait for setpoints."""
-        self._epoch_ns = None
-        self.set_state('waiting')
+        """Begin to work."""
+        self._mode.activate()
 
     def answer(self, setpoint: Point) -> None:
         """
@@ -102,42 +127,27 @@ class DriveSim(ManagedNode):
             Position, velocity and acceleration of the axis.
 
         """
-        if not self.active:
-            return
-        time_ns = setpoint.sec * NANOSECONDS + setpoint.nanosec
-        if self._epoch_ns is None or self._clock_started_over(time_ns):
-            self._epoch_ns = self.get_clock().now().nanoseconds - time_ns
-            self.set_state('following')
-        state = self._drive.follow(setpoint.position, setpoint.velocity, setpoint.acceleration)
-        self._last = state
-        self._peak_torque = max(self._peak_torque, abs(state.motor_torque))
-        self._answered += 1
-        self._states.publish(self._codec.pack(
-            self._epoch_ns + time_ns,
-            (state.motor_position, state.load_position),
-            (state.motor_velocity, state.load_velocity),
-            (state.motor_torque, state.load_torque)))
+        if self._mode is not None:
+            self._mode.answer(setpoint)
 
-    def _clock_started_over(self, time_ns: int) -> bool:
-        """Tell whether /clock has jumped back: the machine's time base goes on, stamps do not."""
-        if not self.sim_time:
-            return False
-        return self.get_clock().now().nanoseconds < self._epoch_ns + time_ns - NANOSECONDS
+    def deactivate(self) -> None:
+        """Cease to work."""
+        self._mode.deactivate()
 
-    def _on_setpoint(self, data: bytes) -> None:
-        setpoint = unpack_point(data)
-        if setpoint is not None:
-            self.answer(setpoint)
-            return
-        self._refused += 1
-        self.get_logger().warning(
-            'setpoint: a point without exactly one finite position, velocity and acceleration '
-            'was left out', throttle_duration_sec=1.0)
+    def begin_stop(self) -> None:
+        """Begin to come to rest."""
+        if self._mode is not None:
+            self._mode.begin_stop()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the drive has come to rest."""
+        return self._mode is None or self._mode.stopped
 
     @property
     def hardware_id(self) -> str:
         """Name the axis that the drive moves."""
-        return self._axis if self._states is not None else self.get_name()
+        return (self._mode.axis if self._mode is not None else '') or self.get_name()
 
     def health(self) -> tuple[bytes, Mapping[str, Any]]:
         """
@@ -149,14 +159,9 @@ class DriveSim(ManagedNode):
             Level and figures of the diagnostics.
 
         """
-        if self._states is None or not self._answered:
+        if self._mode is None:
             return diagnostics.OK, {}
-        return diagnostics.WARN if self._refused else diagnostics.OK, {
-            'states': self._answered, 'refused_points': self._refused,
-            'motor_torque': self._last.motor_torque,
-            'motor_speed_rpm': self._last.motor_velocity / RPM,
-            'peak_motor_torque': self._peak_torque,
-        }
+        return self._mode.health()
 
 
 def main(argv: list[str] | None = None) -> int:

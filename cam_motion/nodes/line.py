@@ -10,18 +10,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 import sys
 from typing import Any
 
 from cam_motion.errors import ConfigurationError
+from cam_motion.io.interlocks import line_values
 from cam_motion.io.machine import build_machine
-from cam_motion.io.parameters import check_values, LINE
+from cam_motion.io.parameters import LINE
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.drive_sim import DriveSim
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.master_shaft import MasterShaft
-from cam_motion.nodes.parameters import values_of
+from cam_motion.nodes.parameters import section_of, values_of
 from cam_motion.nodes.runner import run
+from cam_motion.nodes.staging import own_values
 
 
 class Line(ManagedNode):
@@ -59,7 +62,9 @@ class Line(ManagedNode):
             When the axes do not keep their limits at the set speed, or names do not fit.
 
         """
-        sections = {part.get_name(): values_of(part) for part in self.parts}
+        sections = {part.get_name(): own_values(values_of(part)) for part in self.parts}
+        if values['master'] not in sections and (beside := section_of(values['master'])):
+            sections[values['master']] = beside  # a master that a drive has displaced
         # said by the parts themselves: only what concerns the machine as a whole is left
         known = {
             f'{part.get_name()}.{problem.path}' for part in self.parts for problem in part.problems
@@ -105,7 +110,8 @@ def make_line(**options: Any) -> list[ManagedNode]:
     Returns
     -------
     list[ManagedNode]
-        Master shaft, axes, drives, and the line itself.
+        Master shaft, axes, drives, and the line itself; a drive that turns the shaft stands in
+        the place of the master.
 
     Raises
     ------
@@ -114,19 +120,27 @@ def make_line(**options: Any) -> list[ManagedNode]:
 
     """
     line = Line(**options)
-    names, problems = check_values(LINE, values_of(line))
+    names, problems = line_values(values_of(line))
     if problems:
         line.destroy_node()
         raise ConfigurationError(problem.below('line') for problem in problems)
-    master = MasterShaft(names['master'], **options)
     axes = {name: CamAxis(name, own_process=False, **options) for name in names['axes']}
     drives = [DriveSim(name, own_process=False, **options) for name in names['drives']]
-    master.listeners += [axis.answer for axis in axes.values()]
+    turning = [drive for drive in drives if drive.kind.TURNS_SHAFT]
+    master: MasterShaft | DriveSim = (
+        turning[0] if turning else MasterShaft(names['master'], own_process=False, **options))
+    for axis in axes.values():
+        source = axes.get(values_of(axis).get('follows', ''), master)
+        source.listeners.append(axis.answer)
+        if isinstance(master, MasterShaft):
+            master.sections = lambda: {name: values_of(node) for name, node in axes.items()}
+            axis.bound_listeners.append(partial(master.obey, axis.get_name()))
     for drive in drives:
+        drive.section = lambda name: own_values(values_of(axes[name])) if name in axes else {}
         followed = axes.get(values_of(drive).get('axis', ''))
         if followed is not None:
             followed.listeners.append(drive.answer)
-    line.parts = [master, *axes.values(), *drives]
+    line.parts = [master, *axes.values(), *(drive for drive in drives if drive is not master)]
     return [*line.parts, line]
 
 

@@ -13,14 +13,16 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from cam_motion.io.axis import Values
-from cam_motion.io.machine import guess_line
-from cam_motion.io.parameters import check_values, LINE
+from cam_motion.io.interlocks import line_values
+from cam_motion.io.machine import guess_line, shaft_drives
+from cam_motion.io.servo_config import SERVO
 from cam_motion.nodes.diagnostics import TOPIC as DIAGNOSTICS
 from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from rclpy.qos import QoSProfile
 
 _POINT = 'trajectory_msgs/msg/JointTrajectoryPoint'
 _JOINTS = 'sensor_msgs/msg/JointState'
+_NUMBER = 'std_msgs/msg/Float64'
 _TEXT = 'std_msgs/msg/String'
 
 
@@ -47,13 +49,19 @@ def topics_of(sections: Mapping[str, Values]) -> list[LineTopic]:
         The topics of the contract.
 
     """
-    names, _ = check_values(LINE, sections.get('line', guess_line(sections)))
-    parts = [names['master'], *names['axes'], *names['drives'], 'line']
+    names, _ = line_values(sections.get('line', guess_line(sections)))
+    # a drive that turns the shaft is the master
+    masters = [] if shaft_drives(sections, names['drives']) else [names['master']]
+    parts = [*masters, *names['axes'], *names['drives'], 'line']
     return [
         LineTopic('shaft', _POINT, SETPOINTS),
         LineTopic('joint_states', _JOINTS, SETPOINTS),
         *(LineTopic(f'{axis}/setpoint', _POINT, SETPOINTS) for axis in names['axes']),
+        *(LineTopic(f'{axis}/max_speed_cpm', _NUMBER, LATCHED) for axis in names['axes']),
+        *(LineTopic(f'{axis}/format_change', _NUMBER, LATCHED) for axis in names['axes']),
         *(LineTopic(f'{drive}/drive_state', _JOINTS, SETPOINTS) for drive in names['drives']),
+        *(LineTopic(f'{drive}/actual', _POINT, SETPOINTS) for drive in names['drives']
+          if sections.get(drive, {}).get('mode') == SERVO),
         *(LineTopic(f'{part}/state', _TEXT, LATCHED) for part in parts),
         LineTopic(DIAGNOSTICS, 'diagnostic_msgs/msg/DiagnosticArray', SETPOINTS),
     ]

@@ -58,13 +58,15 @@ class ManagedNode(LifecycleNode):
         declare_given(self)
         self.problems: tuple[Problem, ...] = ()
         self.failed = False
+        self.own_change = False
+        """Whether the node itself is setting its parameters, which then are not looked at."""
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.active = False
         self._configured = False
         self._state_text = ''
         self._made: list[Callable[[], object]] = []  # how to undo what `configure` has made
         take_from_any_namespace(self)
-        declare(self, self.TABLE)
+        declare(self, self.table)
         self._state = self.create_publisher(String, STATE, **overridable(LATCHED))
         self._diagnostics = self.create_publisher(DiagnosticArray, diagnostics.TOPIC, 10)
         self._diagnostics_timer = self.create_timer(
@@ -189,6 +191,11 @@ class ManagedNode(LifecycleNode):
         """Name what the node stands for in the diagnostics."""
         return self.get_name()
 
+    @property
+    def table(self) -> tuple[ParameterSpec, ...]:
+        """List the parameters; they are `TABLE` unless they depend on what is given."""
+        return self.TABLE
+
     # What all nodes share
 
     @property
@@ -287,22 +294,28 @@ class ManagedNode(LifecycleNode):
 
     def _on_set_parameters(self, changes: list[Parameter]) -> SetParametersResult:
         """Accept or refuse a change; must never raise, that would end the executor."""
-        specs = {spec.name: spec for spec in self.TABLE}
+        if self.own_change:
+            return SetParametersResult(successful=True)
+        specs = {spec.name: spec for spec in self.table}
         for change in changes:
             name, value = change.name, change.value
             if is_of_every_node(name):
                 continue
-            if self._configured and name not in self.LIVE:
+            if self._configured and not self.is_live(name):
                 return SetParametersResult(successful=False, reason=(
                     f'{name} can change while the node is unconfigured only: clean it up first'))
             problem = specs[name].check(value) if name in specs and value is not None else None
             reason = str(problem) if problem else self.refuse_change(name, value)
             if reason:
                 return SetParametersResult(successful=False, reason=reason)
-        for change in changes:
-            if self._configured and change.name in self.LIVE:
-                self.take_change(change.name, change.value)
-        return SetParametersResult(successful=True)
+        live = {change.name: change.value for change in changes
+                if self._configured and not is_of_every_node(change.name)}
+        try:
+            reason = self.take_changes(live) if live else ''
+        except Exception:
+            self.get_logger().error(f'a change failed:\n{traceback.format_exc()}')
+            reason = 'an error of the node, see its log'
+        return SetParametersResult(successful=not reason, reason=reason)
 
     def refuse_change(self, name: str, value: Any) -> str:
         """
@@ -323,18 +336,39 @@ class ManagedNode(LifecycleNode):
         """
         return ''
 
-    def take_change(self, name: str, value: Any) -> None:
+    def is_live(self, name: str) -> bool:
         """
-        Take over a live parameter.
+        Tell whether a parameter may change while the node is configured.
 
         Parameters
         ----------
         name : str
             Name of the parameter.
-        value : Any
-            Its new value, checked.
+
+        Returns
+        -------
+        bool
+            Whether it is one of `LIVE`.
 
         """
+        return name in self.LIVE
+
+    def take_changes(self, changes: Mapping[str, Any]) -> str:
+        """
+        Take over live parameters that were set together: all of them or none.
+
+        Parameters
+        ----------
+        changes : Mapping[str, Any]
+            New values by flat name, each checked on its own.
+
+        Returns
+        -------
+        str
+            Why they cannot be taken over; empty when they have been.
+
+        """
+        return ''
 
     def _report(self) -> None:
         level, values = self.health()

@@ -10,30 +10,47 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
+import math
 import sys
 from typing import Any
 
+from cam_motion.errors import ConfigurationError
+from cam_motion.io.axis import names_in
+from cam_motion.io.axis_limits import ramp_room
 from cam_motion.io.machine import build_master
 from cam_motion.io.parameters import MASTER_SHAFT
 from cam_motion.nodes import diagnostics
+from cam_motion.nodes.encoder_input import EncoderInput
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.qos import SETPOINTS
+from cam_motion.nodes.parameters import section_of
+from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from cam_motion.nodes.runner import run
-from cam_motion.nodes.wire import JointStateCodec, pack_point, Point
+from cam_motion.nodes.shaft_ticker import Listener, SHAFT, ShaftTicker
 from cam_motion.runtime.shaft import Shaft, ShaftError, ShaftMode
-from cam_motion.runtime.ticks import NANOSECONDS, TickSchedule
-from cam_motion.units import RPM, TURN
-from rclpy.timer import Timer
-from sensor_msgs.msg import JointState
+from cam_motion.runtime.shaft_motion import ShaftState
+from cam_motion.units import RPM
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
-from trajectory_msgs.msg import JointTrajectoryPoint
 
-SHAFT = 'shaft'
-_SIM_TIME_CATCH_UP = 1.0  # /clock may come in coarse steps: its ticks are all carried out [s]
 _STOP_WITHIN = 3.0  # an ordinary stop that takes longer gives way to the quick stop [s]
 
-Listener = Callable[[Point], None]
+
+def sections_beside() -> dict[str, dict[str, Any]]:
+    """
+    Read the parameters of the axes of the line from the parameter files of this process.
+
+    Returns
+    -------
+    dict[str, dict[str, Any]]
+        Parameters by name of the axis and flat name; of axes that stand in a file only.
+
+    """
+    try:
+        names = names_in(section_of('line'), 'axes')
+        return {name: section for name in names if (section := section_of(name))}
+    except ConfigurationError:
+        return {}  # ROS has read the file as it could; the offline check says what is wrong
 
 
 class MasterShaft(ManagedNode):
@@ -44,6 +61,9 @@ class MasterShaft(ManagedNode):
     ----------
     name : str
         Name of the node.
+    own_process : bool
+        Whether the axes say over topics how fast they allow the shaft to run; else the owner of
+        the process calls `obey`.
     **options : Any
         Further arguments of `rclpy.node.Node`.
 
@@ -52,12 +72,16 @@ class MasterShaft(ManagedNode):
     TABLE = MASTER_SHAFT
     LIVE = frozenset({'speed_cpm'})
 
-    def __init__(self, name: str = 'master_shaft', **options: Any) -> None:
+    def __init__(self, name: str = 'master_shaft', own_process: bool = True, **options: Any,
+                 ) -> None:
         """Declare the parameters."""
         super().__init__(name, **options)
+        self._own_process = own_process
         self.listeners: list[Listener] = []
         """Called with every tick: axes of the same process, which need no topic."""
-        self._timer: Timer | None = None
+        self.sections: Callable[[], Mapping[str, Mapping[str, Any]]] = sections_beside
+        """Gives the parameters of all axes of the line, by name."""
+        self._ticker: ShaftTicker | None = None
 
     def configure(self, values: dict[str, Any]) -> None:
         """
@@ -72,59 +96,90 @@ class MasterShaft(ManagedNode):
         settings = build_master(self.get_name(), values)
         checked = settings.values
         self._shaft: Shaft = settings.shaft()
-        catch_up = checked['max_catch_up']
-        self._schedule = TickSchedule(
-            checked['rate_hz'], max(catch_up, _SIM_TIME_CATCH_UP) if self.sim_time else catch_up)
         self._start_delay = checked['start_delay'] if checked['run_at_start'] else None
         self._run_at: float | None = None  # when the shaft is to start on its own
         self._now = 0.0  # time of the last tick: commands take effect behind it
-        self._last_ns = 0
-        self._ticks = 0
-        self._epoch_ns: int | None = None  # node time at which the machine's time base began
-        hz = checked['joint_states_hz']
-        self._ticks_per_state = max(1, round(checked['rate_hz'] / hz)) if hz else 0
-        self._codec = JointStateCodec([self.get_name()], with_effort=False)
-        self._points = self.make_publisher(JointTrajectoryPoint, SHAFT, SETPOINTS)
-        self._joint_states = self.make_publisher(JointState, 'joint_states', SETPOINTS)
+        self._allowed: dict[str, float] = {}  # highest speed by axis [rad/s]
+        self._ticker = ShaftTicker(self, checked, self.listeners, self._tick)
+        self._encoder = EncoderInput(self, checked, self._ticker) if (
+            checked['encoder.topic']) else None
         self.make_subscription(
             Float64, '~/speed_cpm', lambda message: self._set_speed(message.data), SETPOINTS)
+        sections = self.sections()
+        axes = checked['obey'] or list(sections)
+        self._shaft.room = ramp_room({name: sections[name] for name in axes if name in sections})
+        for axis in axes if self._own_process else ():
+            self.make_subscription(Float64, f'{axis}/max_speed_cpm', partial(
+                lambda message, axis: self.obey(axis, message.data * RPM), axis=axis), LATCHED)
         self.make_service(SetBool, '~/run', self._on_run)
         for name, done in (('stop_at_cycle_end', 'stops at the end of a cycle'),
                            ('quick_stop', 'stops quickly'), ('reset', 'is ready to run')):
             self.make_service(Trigger, f'~/{name}', self._command(name, done))
-        self._timer = self.create_timer(
-            1.0 / checked['rate_hz'], self._on_timer, clock=self.tick_clock, autostart=False)
+
+    def obey(self, axis: str, omega: float) -> None:
+        """
+        Run no faster than an axis allows, from now on.
+
+        Parameters
+        ----------
+        axis : str
+            Its name.
+        omega : float
+            Highest speed of the shaft [rad/s]; infinite where the axis has no limit.
+
+        """
+        if self._ticker is None or not omega >= 0.0:
+            return
+        self._allowed[axis] = omega
+        was = self._shaft.target
+        self._shaft.allow(self._now, min(self._allowed.values()))
+        if abs(self._shaft.speed) > self._shaft.allowed and self._shaft.target != was:
+            self.get_logger().warning(
+                f'{self._slowest} holds the shaft back to {self._shaft.allowed / RPM:.5g} '
+                f'cycles/min; it is set to {self._shaft.speed / RPM:.5g}')
+
+    @property
+    def _slowest(self) -> str:
+        return min(self._allowed, key=lambda axis: self._allowed[axis])
 
     def cleanup(self) -> None:
         """Drop topics, services and the timer."""
         super().cleanup()
-        if self._timer is not None:
-            self.destroy_timer(self._timer)
-            self._timer = None
+        if self._ticker is not None:
+            self._ticker.close()
+            self._ticker = None
 
     def activate(self) -> None:
         """Begin to tick; the shaft stands for a moment so that everything finds each other."""
-        self._schedule.resume()
-        self._epoch_ns = None
         quick = self._shaft.mode(self._now) is ShaftMode.QUICK_STOPPED
         if self._start_delay is not None and not quick:
             self._run_at = self._now + self._start_delay
-        self._timer.reset()
+        self._ticker.start()
         self.set_state(self._shaft.mode(self._now).value)
 
     def deactivate(self) -> None:
         """Cease to tick; a shaft that still turns is brought to a hold point where it is."""
-        self._timer.cancel()
-        state = self._shaft.state(self._now)
+        self._ticker.pause()
+        state = self._shaft_now
         if state.omega:
             self.get_logger().warning(
                 f'deactivated while turning at {state.omega / RPM:.1f} cycles/min')
-            self._emit(Point(state.phi, 0.0, 0.0, *divmod(self._last_ns, NANOSECONDS)))
+            self._ticker.hold(state.phi)
         self._shaft = self._shaft.at_rest(state.phi)
+        if self._encoder is not None:
+            self._encoder.reset()
+
+    @property
+    def _shaft_now(self) -> ShaftState:
+        """Give the shaft at the last tick."""
+        return self._shaft.state(self._now) if self._encoder is None else self._encoder.state
 
     def begin_stop(self) -> None:
         """Ramp down, by the quick stop if the ordinary one would take too long."""
         if not self.active:
+            return
+        if self._encoder is not None:
+            self._encoder.release(self._now, 'asked to end')
             return
         self._run_at = None
         self._shaft.stop(self._now)
@@ -134,6 +189,8 @@ class MasterShaft(ManagedNode):
     @property
     def stopped(self) -> bool:
         """Whether the shaft stands, and has said so."""
+        if self._encoder is not None:
+            return not self.active or self._encoder.stands
         return not self.active or self._shaft.state(self._now).omega == 0.0
 
     def health(self) -> tuple[bytes, Mapping[str, Any]]:
@@ -146,70 +203,55 @@ class MasterShaft(ManagedNode):
             Level and figures of the diagnostics.
 
         """
-        if self._timer is None:
+        if self._ticker is None:
             return diagnostics.OK, {}
-        state = self._shaft.state(self._now)
-        schedule = self._schedule
-        return diagnostics.WARN if schedule.missed else diagnostics.OK, {
-            'speed_cpm': state.omega / RPM, 'set_speed_cpm': self._shaft.speed / RPM,
-            'angle_deg': state.phi % TURN / TURN * 360.0, 'cycles': int(state.phi // TURN),
-            'ticks': self._ticks, 'missed_ticks': schedule.missed,
-            'late_ticks': schedule.late, 'worst_lateness_us': 1e-3 * schedule.worst_ns,
-            'clock_restarts': schedule.restarts,
-        }
+        phi, omega, _ = self._shaft_now
+        if self._encoder is not None:
+            values = self._ticker.health(phi, omega) | self._encoder.health()
+            return diagnostics.ERROR if self._encoder.reason else diagnostics.OK, values
+        values = self._ticker.health(phi, omega) | {'set_speed_cpm': self._shaft.speed / RPM}
+        if math.isfinite(self._shaft.allowed):
+            values |= {'allowed_speed_cpm': self._shaft.allowed / RPM}
+        if abs(self._shaft.speed) > self._shaft.allowed:
+            values |= {'held_back_by': self._slowest}
+        if self.count_publishers(SHAFT) > 1:
+            values |= {'reason': 'another node publishes the shaft too'}
+            return diagnostics.ERROR, values
+        return diagnostics.WARN if values['missed_ticks'] else diagnostics.OK, values
 
-    def take_change(self, name: str, value: Any) -> None:
+    def take_changes(self, changes: Mapping[str, Any]) -> str:
         """
         Take over a new set speed.
 
         Parameters
         ----------
-        name : str
-            ``speed_cpm``.
-        value : Any
-            The speed [cycles/min].
+        changes : Mapping[str, Any]
+            ``speed_cpm`` alone [cycles/min].
+
+        Returns
+        -------
+        str
+            Empty.
 
         """
-        self._set_speed(value)
-
-    def _on_timer(self) -> None:
-        clock = self.tick_clock
-        now_ns = clock.now().nanoseconds
-        if self._epoch_ns is None:
-            # the timer's own grid, not this wake-up, says when tick 0 was due
-            overdue = int(self._schedule.period_ns) - self._timer.time_until_next_call()
-            now_ns -= overdue
-            self._epoch_ns = (self.get_clock().now().nanoseconds - overdue
-                              - self._schedule.time_ns(self._schedule.next_tick))
-        restarts = self._schedule.restarts
-        due = self._schedule.due(now_ns)
-        if self._schedule.restarts != restarts:
-            # the clock has started over: stamps go with it, the time base goes on
-            self._epoch_ns = (self.get_clock().now().nanoseconds
-                              - self._schedule.time_ns(due.start))
-        for tick in due:
-            self._tick(self._schedule.time_ns(tick))
+        self._set_speed(changes['speed_cpm'])
+        return ''
 
     def _tick(self, time_ns: int) -> None:
         t = time_ns * 1e-9
+        if self._encoder is not None:
+            self._now = t
+            state = self._encoder.tick(t)
+            if state is not None:
+                self._ticker.publish(time_ns, *state)
+            self.set_state(self._encoder.text)
+            return
         if self._run_at is not None and t >= self._run_at:
             self._run_at = None
             self._shaft.run(t)
         self._now = t
-        self._last_ns = time_ns
-        phi, omega, alpha = self._shaft.state(t)
-        sec, nanosec = divmod(time_ns, NANOSECONDS)
-        self._emit(Point(phi, omega, alpha, sec, nanosec))
-        if self._ticks_per_state and self._ticks % self._ticks_per_state == 0:
-            self._joint_states.publish(
-                self._codec.pack(self._epoch_ns + time_ns, (phi,), (omega,)))
+        self._ticker.publish(time_ns, *self._shaft.state(t))
         self.set_state(self._shaft.mode(t).value)
-        self._ticks += 1
-
-    def _emit(self, point: Point) -> None:
-        self._points.publish(pack_point(*point))
-        for listener in self.listeners:
-            listener(point)
 
     def _set_speed(self, speed_cpm: float) -> None:
         try:
@@ -230,6 +272,14 @@ class MasterShaft(ManagedNode):
             response.success = False
             if not self.active:
                 response.message = 'the node is not active'
+                return response
+            if self._encoder is not None:
+                if name != 'reset' or not self._encoder.stands:
+                    response.message = 'the shaft follows its encoder: it takes no commands' if (
+                        name != 'reset') else 'the shaft is still turning'
+                    return response
+                self._encoder.reset()
+                response.success, response.message = True, 'the shaft waits for its encoder'
                 return response
             self._run_at = None
             try:

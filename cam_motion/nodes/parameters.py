@@ -35,6 +35,34 @@ def machine_files() -> list[str]:
     return [value for flag, value in zip(sys.argv, sys.argv[1:]) if flag == '--params-file']
 
 
+def section_of(name: str, machine: str = '') -> dict[str, Any]:
+    """
+    Find the parameters of another node of the machine.
+
+    Parameters
+    ----------
+    name : str
+        Its name, without a namespace.
+    machine : str
+        Machine file; empty takes those of this process.
+
+    Returns
+    -------
+    dict[str, Any]
+        Parameters by flat name; empty where no file has such a section.
+
+    Raises
+    ------
+    ConfigurationError
+        When a file cannot be used.
+
+    """
+    found: dict[str, Any] = {}
+    for path in [machine] if machine else machine_files():
+        found |= read_sections(path).get(name, {})
+    return found
+
+
 def declare_given(node: Node) -> None:
     """
     Declare whatever a node has been given, known or not.

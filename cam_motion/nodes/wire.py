@@ -20,8 +20,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 import math
 import struct
-from typing import NamedTuple
 
+from cam_motion.runtime.point import Point
 from rclpy.serialization import deserialize_message
 from trajectory_msgs.msg import JointTrajectoryPoint
 
@@ -30,26 +30,6 @@ _LITTLE_ENDIAN_CDR = (0, 1, 0, 0)
 _POINT = struct.Struct('<4B I4xd I4xd I4xd I iI')
 _ONE_DOUBLE_EACH = (*_LITTLE_ENDIAN_CDR, 1, 1, 1, 0)
 _NANOSECONDS = 1_000_000_000
-
-
-class Point(NamedTuple):
-    """
-    One sample of a motion on the machine's time base.
-
-    For the shaft: angle [rad], speed [rad/s], acceleration [rad/s²]; for an axis its setpoint
-    in its own unit, per s, per s². The time is ``sec`` + ``nanosec`` since the time base began.
-    """
-
-    position: float
-    velocity: float
-    acceleration: float
-    sec: int
-    nanosec: int
-
-    @property
-    def time(self) -> float:
-        """Time since the machine's time base began [s]."""
-        return self.sec + 1e-9 * self.nanosec
 
 
 def pack_point(

@@ -144,7 +144,7 @@ class Demand:
             Whether they do, but for rounding.
 
         """
-        low, high = limits.range
+        low, high = limits.positions
         y = self.values[0]
         slack = 1e-9 * (1.0 + float(np.ptp(y)))
         return bool(np.min(y) >= low - slack and np.max(y) <= high + slack)

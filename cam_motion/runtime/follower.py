@@ -54,8 +54,8 @@ class Follower:
     settings : FollowerSettings
         What it may.
     engaged : bool
-        Whether it is on its curve from the first shaft point on; else it stands at 0 until
-        engaged.
+        Whether it is on its curve from the first shaft point on; else it stands at its
+        start position until engaged.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class Follower:
         self.plan: Plan | None = None
         self.reason = ''
         self._shaft: ShaftState | None = None
-        self._set_motion(layout.motion if engaged else Standstill(0.0))
+        self._set_motion(layout.motion if engaged else Standstill(settings.start_position))
         self.state = FollowerState.WAITING if engaged else FollowerState.DISENGAGED
         """What the axis does."""
         self._begun = self._through = self.state  # states while a plan goes on, and after it
@@ -192,7 +192,8 @@ class Follower:
             self.state = FollowerState.DISENGAGED
             return None
         if shaft is None or (shaft.omega == 0.0 == shaft.alpha and stop is None):
-            position = 0.0 if shaft is None else self.sample(shaft.phi)[0]
+            position = self.settings.start_position if shaft is None else (
+                self.sample(shaft.phi)[0])
             self._adopt(Standstill(position), FollowerState.DISENGAGED)
             return None
         timing, now = self.settings.disengage, self.sample
@@ -303,11 +304,8 @@ class Follower:
             self._held_at = 0.0 if self._shaft is None else self._shaft.phi
             self._set_motion(Standstill(self.sample(self._held_at)[0]))
         self.plan, self._watch = None, False
+        self._shaft = None  # when it is heard again it may be anywhere
         self.state = state
-
-    def lose_shaft(self) -> None:
-        """Forget where the shaft was: the next point may come from anywhere."""
-        self._shaft = None
 
     # How
 

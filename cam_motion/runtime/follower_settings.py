@@ -49,6 +49,8 @@ class FollowerSettings:
         Whether engaging starts the cams at their own beginning, wherever the shaft is.
     slave_relative : bool
         Whether engaging adds the cams to the position at which the axis stands.
+    start_position : float
+        Where an axis stands that is not engaged from the start.
     stop_position : float | None
         Where the axis is to stand when disengaged; None stops it where it is.
 
@@ -62,4 +64,5 @@ class FollowerSettings:
     resume: Timing = field(default_factory=Timing)
     master_relative: bool = False
     slave_relative: bool = False
+    start_position: float = 0.0
     stop_position: float | None = None

@@ -87,6 +87,10 @@ class Layout:
         return sum(self._cam(name).advance * self.couplings[name].ratio for name in self.active)
 
     @property
+    def _strokes(self) -> list[tuple[float, float]]:
+        return [(self.couplings[name].ratio, self._cam(name).advance) for name in self.active]
+
+    @property
     def accumulates(self) -> bool:
         """Whether the axis gains something in each cycle, as a belt does."""
         return any(self.cams[name].advance for name in self.active)
@@ -172,18 +176,18 @@ class Layout:
         Returns
         -------
         Layout
-            The layout so anchored. A belt with other strokes goes on from where its last cycle
-            began, whatever it has gained before.
+            The layout so anchored. A belt with other strokes goes on from where it stands at
+            the start, or, where it moves then, from where its last cycle began, whatever it has
+            gained before.
 
         """
         new = replace(self, origin=old.origin, shift=old.shift)
-        scales = [new.couplings[name].scale for name in new.active]
-        if not (new.accumulates or old.accumulates) or (
-                new.active == old.active
-                and scales == [old.couplings[name].scale for name in old.active]):
+        if not (new.accumulates or old.accumulates) or new._strokes == old._strokes:
             return new
-        turns = math.floor(sense * (start - new.origin) / TURN + _AHEAD)
-        begin = new.origin + sense * turns * TURN
+        begin = start
+        if old.motion.sample(start)[1] or new.motion.sample(start)[1]:
+            turns = math.floor(sense * (start - new.origin) / TURN + _AHEAD)
+            begin = new.origin + sense * turns * TURN
         gap = old.motion.sample(begin)[0] - new.motion.sample(begin)[0]
         return replace(new, shift=new.shift + gap)
 
@@ -202,7 +206,7 @@ class Layout:
             When it would leave them, with the figures.
 
         """
-        if self.accumulates or limits.range == (-math.inf, math.inf):
+        if self.accumulates or limits.positions == (-math.inf, math.inf):
             return
         demand = Demand(self.motion, self.origin, self.origin + self.period)
         if not demand.keeps_range(limits):

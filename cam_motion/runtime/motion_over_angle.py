@@ -21,6 +21,8 @@ from cam_motion.motion.profile import CamProfile
 from cam_motion.units import TURN
 import numpy as np
 
+_LOOKS = 33  # points between two joints among which passages are looked for
+
 
 class Motion(Protocol):
     """What an axis does as a function of the shaft angle, for ever, in both directions."""
@@ -184,6 +186,79 @@ class CoupledCam:
         at = np.add.outer(turns, np.asarray(self.profile.curve.breaks[:-1])).ravel()
         at = np.sort((at - self.phase) / self.ratio)
         return at[(at >= low) & (at <= high)]
+
+
+@dataclass(frozen=True)
+class Cascade:
+    """
+    A motion that follows another one instead of the shaft: y = outer(inner(phi)).
+
+    Attributes
+    ----------
+    outer : Motion
+        The motion of the axis, over what it follows.
+    inner : Motion
+        What it follows, over the shaft angle.
+
+    """
+
+    outer: Motion
+    inner: Motion
+
+    @cached_property
+    def sample(self) -> Sampler:
+        """Evaluate position and three derivatives at one angle [rad]."""
+        def chained(phi: float) -> tuple[float, float, float, float]:
+            values = self(np.array([phi]))[:, 0]
+            return float(values[0]), float(values[1]), float(values[2]), float(values[3])
+        return chained
+
+    def __call__(self, phi: Array) -> Array:
+        """
+        Evaluate the motion and its derivatives, by the chain rule.
+
+        Parameters
+        ----------
+        phi : ndarray, shape (n,)
+            Shaft angles [rad].
+
+        Returns
+        -------
+        ndarray, shape (4, n)
+            Position and three derivatives, in the unit of the axis per rad^order of the shaft.
+
+        """
+        inner, slope, bend, jerk = self.inner(phi)
+        y, y1, y2, y3 = self.outer(inner)
+        return np.array([
+            y, y1 * slope, y2 * slope ** 2 + y1 * bend,
+            y3 * slope ** 3 + 3.0 * y2 * slope * bend + y1 * jerk])
+
+    def joints(self, low: float, high: float) -> Array:
+        """
+        Give the angles of steps.
+
+        Parameters
+        ----------
+        low, high : float
+            Range of shaft angles [rad].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Those of the inner motion, and where it passes joints of the outer one, rising [rad].
+
+        """
+        edges = np.unique(np.concatenate([[low, high], self.inner.joints(low, high)]))
+        found = [self.inner.joints(low, high)]
+        for a, b in zip(edges, edges[1:]):
+            phi = np.linspace(a, b, _LOOKS)
+            passed = self.inner(phi)[0]
+            for at in self.outer.joints(float(passed.min()), float(passed.max())):
+                k = np.flatnonzero((passed[:-1] - at) * (passed[1:] - at) < 0.0)
+                share = (at - passed[k]) / (passed[k + 1] - passed[k])
+                found.append(phi[k] + share * (phi[k + 1] - phi[k]))
+        return np.unique(np.concatenate(found))
 
 
 @dataclass(frozen=True)

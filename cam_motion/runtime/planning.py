@@ -83,8 +83,9 @@ class Plan(NamedTuple):
     """
     A transition that keeps the limits.
 
-    The ``blend`` itself and the ``goal`` it leads to, its ``peaks`` at the ``speed`` [rad/s] it
-    was planned for, and the ``highest_speed`` of the shaft [rad/s] at which it keeps all limits.
+    The ``blend`` itself and the ``goal`` it leads to, its ``peaks`` at the ``speed`` of the shaft
+    [rad/s], or for one that stands at the speed it may have, and the ``highest_speed`` [rad/s]
+    at which it keeps all limits.
     """
 
     blend: Blend
@@ -225,7 +226,9 @@ def plan_transition(old: Motion, target: Target, state: ShaftState, timing: Timi
         blend = Blend(old, goal.motion, start, span)
         demand = Demand(blend, min(start, blend.end), max(start, blend.end))
         allowed = demand.highest_speed(limits, pace.ramp)
-        last = Plan(blend, goal, demand.peaks(pace.needed, pace.ramp), pace.needed, allowed)
+        # a shaft that stands will run some time: what counts is how fast it may
+        speed = pace.needed or min(pace.wanted, allowed)
+        last = Plan(blend, goal, demand.peaks(speed, pace.ramp), speed, allowed)
         kept = demand.keeps_range(limits)
         if not kept:
             continue

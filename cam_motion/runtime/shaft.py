@@ -14,11 +14,15 @@ import math
 
 from cam_motion.errors import CamMotionError
 from cam_motion.runtime.ramp import RampLimits, RampStep, speed_ramp
+from cam_motion.runtime.ramp_room import RampRoom
 from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 from cam_motion.units import TURN
 
 # A cycle end this close [turns] counts as reached: the rounding of an angle after 1e6 cycles.
 _AT_CYCLE_END = 1e-9
+# At the very highest speed allowed the limits of the axes would have no room left for the
+# shaft's own acceleration on the way there: it runs slower by this share.
+_ROOM = 5e-4
 
 
 class ShaftError(CamMotionError):
@@ -60,7 +64,11 @@ class Shaft:
                  phi: float = 0.0) -> None:
         """Stand still."""
         self.speed = speed
+        self.allowed = math.inf
+        """Highest speed that the axes allow [rad/s]; a magnitude."""
         self.limits = limits
+        self.room: RampRoom | None = None
+        """The axes for whose sake ordinary ramps are softened; the quick stop never is."""
         self.quick_limits = quick_limits
         self._mode = ShaftMode.STOPPED
         self._motion = ShaftMotion(0.0, ShaftState(phi, 0.0, 0.0))
@@ -124,8 +132,8 @@ class Shaft:
         """
         if self.mode(t) in (ShaftMode.QUICK_STOPPING, ShaftMode.QUICK_STOPPED):
             raise ShaftError('the shaft has been stopped quickly: reset it before it runs again')
-        self._ramp(t, self.speed, self.limits)
         self._mode = ShaftMode.RUNNING
+        self._ramp(t, self.target, self._softened(t, self.target))
 
     def set_speed(self, t: float, speed: float) -> None:
         """
@@ -148,7 +156,30 @@ class Shaft:
             raise ShaftError(f'a speed must be a finite number, not {speed!r}')
         self.speed = speed
         if self.mode(t) is ShaftMode.RUNNING:
-            self._ramp(t, speed, self.limits)
+            self._ramp(t, self.target, self._softened(t, self.target))
+
+    def allow(self, t: float, speed: float) -> None:
+        """
+        Obey another highest speed; a running shaft ramps as far as it may.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        speed : float
+            Highest speed [rad/s], not negative; infinite where nothing limits it.
+
+        """
+        if speed == self.allowed:
+            return
+        self.allowed = speed
+        if self.mode(t) is ShaftMode.RUNNING:
+            self._ramp(t, self.target, self._softened(t, self.target))
+
+    @property
+    def target(self) -> float:
+        """Give the speed at which it runs: the set speed, as far as it is allowed [rad/s]."""
+        return math.copysign(min(abs(self.speed), self.allowed * (1.0 - _ROOM)), self.speed)
 
     def stop(self, t: float) -> None:
         """
@@ -161,7 +192,7 @@ class Shaft:
 
         """
         if self.mode(t) in (ShaftMode.RUNNING, ShaftMode.STOPPING_AT_CYCLE_END):
-            self._ramp(t, 0.0, self.limits)
+            self._ramp(t, 0.0, self._softened(t, 0.0))
             self._mode = ShaftMode.STOPPING
 
     def quick_stop(self, t: float) -> None:
@@ -199,17 +230,19 @@ class Shaft:
         mode = self.mode(t)
         if mode is ShaftMode.STOPPING_AT_CYCLE_END:
             return
-        if mode is not ShaftMode.RUNNING or self.speed == 0.0:
+        if mode is not ShaftMode.RUNNING or self.target == 0.0:
             raise ShaftError(f'the shaft is not running ({mode.value}): it cannot stop at the '
                              'end of a cycle')
-        cruise = self._motion.ramped(t, self.speed, self.limits)
+        speed = self.target
+        limits = self._softened(t, speed)
+        cruise = self._motion.ramped(t, speed, limits)
         start, cruising = cruise.settled_at, cruise.final
-        brake = speed_ramp(self.speed, 0.0, 0.0, self.limits)
+        brake = speed_ramp(speed, 0.0, 0.0, limits)
         distance = ShaftMotion(start, cruising, brake).final.phi - cruising.phi
-        sense = math.copysign(1.0, self.speed)
+        sense = math.copysign(1.0, speed)
         turns = sense * (cruising.phi + distance) / TURN
         end = sense * math.ceil(turns - _AT_CYCLE_END) * TURN
-        wait = max(0.0, (end - cruising.phi - distance) / self.speed)
+        wait = max(0.0, (end - cruising.phi - distance) / speed)
         self._motion = cruise.continued([RampStep(wait, 0.0), *brake], ShaftState(end, 0.0, 0.0))
         self._mode = ShaftMode.STOPPING_AT_CYCLE_END
 
@@ -249,9 +282,19 @@ class Shaft:
 
         """
         still = Shaft(self.speed, self.limits, self.quick_limits, phi)
+        still.allowed, still.room = self.allowed, self.room
         if self._mode is ShaftMode.QUICK_STOPPING:
             still._mode = self._mode  # to be acknowledged all the same
         return still
+
+    def _softened(self, t: float, target: float) -> RampLimits:
+        """Choose the limits of an ordinary ramp so that the axes keep theirs."""
+        if self.room is None:
+            return self.limits
+        _, omega, alpha = self._motion.state(t)
+        # an acceleration under way carries on while it is taken back
+        carried = abs(omega) + 0.5 * alpha * alpha / self.limits.jerk
+        return self.room.soften(max(carried, abs(target)), self.limits)
 
     def _ramp(self, t: float, target: float, limits: RampLimits) -> None:
         self._motion = self._motion.ramped(t, target, limits)

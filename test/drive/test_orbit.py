@@ -10,7 +10,7 @@
 from math import acos, sqrt
 import re
 
-from cam_motion.drive import orbit as orbit_module
+from cam_motion.drive import course
 from cam_motion.drive.load import Friction
 from cam_motion.drive.motor import InductionMotor
 from cam_motion.drive.orbit import find_orbit, NoOrbitError
@@ -159,7 +159,7 @@ def test_every_flywheel_of_the_sweep_has_its_orbit(orbit_of, flywheel):
 @pytest.mark.parametrize('points', [9, 14])
 def test_the_number_of_gauss_points_does_not_matter(
         monkeypatch, press, orbit_of, flywheel, points):
-    monkeypatch.setattr(orbit_module, 'POINTS', points)
+    monkeypatch.setattr(course, 'POINTS', points)
     other, usual = find_orbit(press(flywheel)), orbit_of(flywheel)
     assert other.stretches[0].powers.size == points
     assert other.period == pytest.approx(usual.period, rel=BALANCE)

@@ -13,7 +13,8 @@ from builtin_interfaces.msg import Duration
 from cam_motion.io.axis import build_axis
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.qos import SETPOINTS
-from cam_motion.nodes.wire import pack_point, Point
+from cam_motion.nodes.wire import pack_point
+from cam_motion.runtime.point import Point
 import pytest
 from rclpy.qos import QoSProfile
 from trajectory_msgs.msg import JointTrajectoryPoint

@@ -12,7 +12,8 @@ import math
 
 from cam_motion.io.axis import build_axis
 from cam_motion.nodes.drive_sim import DriveSim
-from cam_motion.nodes.wire import pack_point, Point
+from cam_motion.nodes.wire import pack_point
+from cam_motion.runtime.point import Point
 from cam_motion.units import RPM
 import pytest
 from sensor_msgs.msg import JointState
@@ -33,6 +34,12 @@ PRINTED = 0.01  # the document's figures are rounded to two or three digits
 ROUNDING = 1e-12
 
 
+def heard(node):
+    """Tell whether somebody receives the states of a drive."""
+    states, = (p for p in node.publishers if p.topic_name.endswith('/drive_state'))
+    return states.get_subscription_count() == 1
+
+
 @pytest.fixture
 def follow(world):
     """Send setpoints to a drive; give its answers."""
@@ -43,7 +50,7 @@ def follow(world):
         assert node.active
         states = world.listen(JointState, 'drive_sim/drive_state')
         publisher = world.speaker(JointTrajectoryPoint, 'feeder/setpoint')
-        assert world.spin_until(lambda: node._states.get_subscription_count() == 1)
+        assert world.spin_until(lambda: heard(node))
         for number, setpoint in enumerate(setpoints, start=1):
             publisher.publish(pack_point(*setpoint))
             assert world.spin_until(lambda: len(states) == number)
@@ -138,11 +145,11 @@ def test_setpoints_that_are_none_are_counted_and_left_out(world):
     node.trigger_activate()
     states = world.listen(JointState, 'drive_sim/drive_state')
     publisher = world.speaker(JointTrajectoryPoint, 'feeder/setpoint')
-    assert world.spin_until(lambda: node._states.get_subscription_count() == 1)
+    assert world.spin_until(lambda: heard(node))
     publisher.publish(JointTrajectoryPoint(positions=[1.0, 2.0]))
     publisher.publish(JointTrajectoryPoint(
         positions=[math.nan], velocities=[1.0], accelerations=[1.0]))
-    assert world.spin_until(lambda: node._refused == 2)
+    assert world.spin_until(lambda: node._mode.refused == 2)
     publisher.publish(pack_point(*setpoint(1.0)))
     assert world.spin_until(lambda: len(states) == 1)
     assert node.state_text == 'following'
@@ -155,6 +162,6 @@ def test_a_drive_follows_the_axis_of_its_own_namespace(world):
     node.trigger_activate()
     states = world.listen(JointState, 'l1/drive_sim/drive_state')
     publisher = world.speaker(JointTrajectoryPoint, 'l1/feeder/setpoint')
-    assert world.spin_until(lambda: node._states.get_subscription_count() == 1)
+    assert world.spin_until(lambda: heard(node))
     publisher.publish(pack_point(*setpoint(1.0)))
     assert world.spin_until(lambda: len(states) == 1)

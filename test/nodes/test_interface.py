@@ -7,6 +7,9 @@
 # language governing permissions and limitations under the License.
 """The interface that README shows is the one the nodes have."""
 
+from pathlib import Path
+
+from cam_motion.io.config import read_sections
 from cam_motion.io.interface import INTERFACE
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.drive_sim import DriveSim
@@ -16,8 +19,9 @@ import pytest
 pytestmark = [pytest.mark.timeout(120), pytest.mark.ros]
 
 AXIS = {'segments': ['rest'], 'rest.end_deg': 360.0}
+PRESS = read_sections(Path(__file__).resolve().parents[2] / 'config' / 'cam_press_drive.yaml')
 NODES = {
-    'master_shaft': (MasterShaft, {}), 'cam_axis': (CamAxis, AXIS),
+    'master_shaft': (MasterShaft, {'obey': ['cam_axis']}), 'cam_axis': (CamAxis, AXIS),
     'drive_sim': (DriveSim, {'axis': 'cam_axis'}),
 }
 # What ROS gives to every lifecycle node
@@ -48,5 +52,25 @@ def test_a_node_has_the_topics_and_services_of_the_table_and_no_others(world, ex
             'subscribes': of_ours(ask.get_subscriber_names_and_types_by_node(executable, '/')),
             'serves': of_ours(ask.get_service_names_and_types_by_node(executable, '/')),
         }
+
+    assert world.spin_until(lambda: found() == wanted), (found(), wanted)
+
+
+def test_a_drive_that_turns_the_shaft_has_what_the_table_says_of_its_mode(world):
+    node = world.make(DriveSim, PRESS['press_drive'], name='drive_sim')
+    node.section = PRESS.get
+    node.trigger_configure()
+    rows = [row for row in INTERFACE if row.node in ('drive_sim: line_shaft', 'drive_sim', 'all')
+            and row.kind != 'subscribes']
+    wanted = {(row.kind, row.name.replace('~', '/drive_sim') if row.name[0] == '~'
+               else '/' + row.name.lstrip('/'), row.type_name) for row in rows}
+
+    def found():
+        ask = world.probe
+        return {(kind, *each) for kind, ask in (
+            ('publishes', ask.get_publisher_names_and_types_by_node),
+            ('subscribes', ask.get_subscriber_names_and_types_by_node),
+            ('serves', ask.get_service_names_and_types_by_node))
+            for each in of_ours(ask('drive_sim', '/'))}
 
     assert world.spin_until(lambda: found() == wanted), (found(), wanted)

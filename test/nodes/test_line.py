@@ -27,6 +27,7 @@ STATE = 'std_msgs/msg/String'
 CONTRACT = {
     '/shaft': POINT, '/joint_states': 'sensor_msgs/msg/JointState',
     '/feeder/setpoint': POINT, '/press/setpoint': POINT, '/knife/setpoint': POINT,
+    **{f'/{axis}/max_speed_cpm': 'std_msgs/msg/Float64' for axis in ('feeder', 'press', 'knife')},
     '/feeder_drive/drive_state': 'sensor_msgs/msg/JointState',
     '/master_shaft/state': STATE, '/feeder/state': STATE, '/press/state': STATE,
     '/knife/state': STATE, '/feeder_drive/state': STATE, '/line/state': STATE,
@@ -37,6 +38,8 @@ SERVICES = {
     '/master_shaft/stop_at_cycle_end': 'std_srvs/srv/Trigger',
     '/master_shaft/quick_stop': 'std_srvs/srv/Trigger',
     '/master_shaft/reset': 'std_srvs/srv/Trigger',
+    **{f'/{axis}/engage': 'std_srvs/srv/SetBool' for axis in ('feeder', 'press', 'knife')},
+    **{f'/{axis}/reset': 'std_srvs/srv/Trigger' for axis in ('feeder', 'press', 'knife')},
 }
 AXES = ('feeder', 'press', 'knife')
 OF_THE_PEAK = 1e-9  # what the recorded setpoints may differ from the exact curve
@@ -91,7 +94,7 @@ def test_every_axis_answers_every_tick_once_and_exactly(world, line, machine_fil
     setpoints = {axis: world.points(f'{axis}/setpoint') for axis in AXES}
     states = world.listen(JointState, 'feeder_drive/drive_state')
     nodes[0].trigger_configure()
-    assert world.spin_until(lambda: nodes[0]._points.get_subscription_count() == 1)
+    assert world.spin_until(lambda: nodes[0]._ticker.points.get_subscription_count() == 1)
     nodes[0].trigger_cleanup()
     assert start(nodes) == 0
     assert world.spin_until(lambda: shaft and shaft[-1].position > 12.0)

@@ -50,7 +50,7 @@ def activate(world, node):
     """Bring a master up that is heard from its first tick on; give the points."""
     node.trigger_configure()
     points = world.points('shaft')
-    assert world.spin_until(lambda: node._points.get_subscription_count() == 1)
+    assert world.spin_until(lambda: node._ticker.points.get_subscription_count() == 1)
     node.trigger_activate()
     return points
 
@@ -90,7 +90,7 @@ def test_ticks_are_an_exact_grid_in_nanoseconds(world, rate):
     node = world.make(MasterShaft, {**PATIENT, 'rate_hz': rate})
     points = activate(world, node)
     assert world.spin_until(lambda: len(points) > rate)
-    assert node._schedule.missed == 0
+    assert node._ticker.schedule.missed == 0
     assert [time_ns(point) for point in points] == [
         round(k * 10**9 / rate) for k in range(len(points))]
 
@@ -127,7 +127,7 @@ def test_speed_commands_in_quick_succession_never_make_it_jump(world):
         assert world.spin_until(lambda: len(points) > count + 7 * (k % 5))
     check_smooth(points)
     assert max(abs(point.velocity) for point in points) > 1.0
-    assert node._schedule.missed == 0
+    assert node._ticker.schedule.missed == 0
 
 
 def test_a_set_speed_that_is_no_number_changes_nothing(world, monkeypatch):
@@ -173,7 +173,7 @@ def test_joint_states_come_at_their_rate_with_the_time_of_their_ticks(world):
     points = world.points('shaft')
     node.trigger_configure()
     assert world.spin_until(lambda: [each.get_subscription_count() for each in (
-        node._points, node._joint_states)] == [1, 1])
+        node._ticker.points, node._ticker.joint_states)] == [1, 1])
     before = node.get_clock().now().nanoseconds
     node.trigger_activate()
     assert world.spin_until(lambda: len(joints) > 60)

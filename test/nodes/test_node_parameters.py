@@ -56,7 +56,7 @@ def test_every_parameter_is_described_with_its_unit_and_rule(world):
     for factory in (MasterShaft, CamAxis, DriveSim):
         node = world.make(factory)
         name = node.get_name()
-        declared = [spec for spec in factory.TABLE if node.has_parameter(spec.name)]
+        declared = [spec for spec in node.table if node.has_parameter(spec.name)]
         assert len(declared) >= 5
         answer = world.call(DescribeParameters, f'{name}/describe_parameters',
                             names=[spec.name for spec in declared])

@@ -39,7 +39,7 @@ class Simulator:
         self.node.trigger_configure()
         self.node.trigger_activate()
         assert world.spin_until(lambda: [each.get_subscription_count() for each in (
-            self.node._points, self.node._joint_states)] == [1, 1])
+            self.node._ticker.points, self.node._ticker.joint_states)] == [1, 1])
         self.clock = world.speaker(Clock, '/clock', QoSProfile(
             depth=1, reliability=ReliabilityPolicy.RELIABLE))
         self.now = 0
@@ -111,7 +111,7 @@ def test_ticks_follow_simulated_time_exactly(simulator, world, steps):
     stamps = simulator.stamps
     assert {b - a for a, b in pairwise(stamps)} == {PERIOD}
     assert simulator.times == [k * PERIOD for k in range(len(stamps))]
-    assert simulator.node._schedule.missed == 0
+    assert simulator.node._ticker.schedule.missed == 0
     assert simulator.points[-1].velocity > 0.0
 
 
@@ -136,7 +136,7 @@ def test_ticks_left_out_by_a_jump_forward_are_counted(simulator):
     simulator.go(10, 10)
     before = len(simulator.points)
     simulator.go(2500)
-    missed = simulator.node._schedule.missed
+    missed = simulator.node._ticker.schedule.missed
     assert missed >= 140  # all but those of the last second
     assert len(simulator.points) - before + missed == 250
     assert simulator.times[-1] == (len(simulator.points) + missed - 1) * PERIOD

@@ -14,7 +14,7 @@ import signal
 from cam_motion.io.config import load_machine
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.runner import bring_to_rest
-from cam_motion.nodes.wire import Point
+from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 import numpy as np

@@ -11,7 +11,8 @@ import math
 import struct
 
 from builtin_interfaces.msg import Duration, Time
-from cam_motion.nodes.wire import JointStateCodec, pack_point, Point, unpack_point
+from cam_motion.nodes.wire import JointStateCodec, pack_point, unpack_point
+from cam_motion.runtime.point import Point
 from hypothesis import example, given
 from hypothesis import strategies as st
 import pytest

@@ -81,6 +81,12 @@ def test_every_listed_node_is_started_and_the_master_last(start):
                      ('master_shaft', 'shaft')]
 
 
+def test_a_drive_that_turns_the_shaft_stands_in_the_place_of_the_master(start, root):
+    nodes = [(node['executable'], node['name'])
+             for node in start(config=str(root / 'config' / 'cam_press_drive.yaml'))]
+    assert nodes == [('cam_axis', 'follower'), ('drive_sim', 'press_drive')]
+
+
 def test_a_recorder_comes_with_a_directory_only(start):
     recorder = start(record='bag')[0]
     assert recorder['name'] == recorder['executable'] == 'bag_recorder'

@@ -387,7 +387,7 @@ def obey(shaft, t, asked, follower):
 
 def check_step(before, point, limits):
     """Check one tick against the one before."""
-    (p0, v0, a0), (p1, v1, a1) = before, point
+    (p0, v0, _), (p1, v1, a1) = before, point
     assert abs(v1) <= limits.velocity * (1.0 + 1e-6)
     assert abs(a1) <= limits.acceleration * (1.0 + 1e-6)
     # position and velocity are the integrals of what follows them: nothing jumps

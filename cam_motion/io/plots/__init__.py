@@ -14,11 +14,14 @@ from cam_motion.io.plots.flywheel import flywheel_curve, flywheel_figure
 from cam_motion.io.plots.motor import motor_figure
 from cam_motion.io.plots.profile import profile_figure
 from cam_motion.io.plots.recorded import recorded_figure, recorded_torque_figure, shaft_figure
+from cam_motion.io.plots.servo import following_figure
+from cam_motion.io.plots.sizing import sizing_figure
 from cam_motion.io.plots.style import FORMATS, save
 from cam_motion.io.plots.torque import torque_curve, torque_figure
 
 __all__ = [
-    'FORMATS', 'cam_figure', 'flywheel_curve', 'flywheel_figure', 'load_figure', 'motor_figure',
-    'orbit_figure', 'profile_figure', 'recorded_figure', 'recorded_torque_figure', 'save',
-    'shaft_figure', 'start_up_figure', 'timing_diagram', 'torque_curve', 'torque_figure',
+    'FORMATS', 'cam_figure', 'flywheel_curve', 'flywheel_figure', 'following_figure',
+    'load_figure', 'motor_figure', 'orbit_figure', 'profile_figure', 'recorded_figure',
+    'recorded_torque_figure', 'save', 'shaft_figure', 'sizing_figure', 'start_up_figure',
+    'timing_diagram', 'torque_curve', 'torque_figure',
 ]

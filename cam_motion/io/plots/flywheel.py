@@ -71,8 +71,7 @@ def flywheel_curve(settings: CamDriveSettings) -> FlywheelCurve:
     for k, inertia in enumerate(inertias):
         other = replace(settings, drive=replace(drive, flywheel=float(inertia)))
         try:
-            with np.errstate(all='ignore'):  # where there is none, the search may overflow
-                orbit = find_orbit(other.drive)
+            orbit = find_orbit(other.drive)
             figures = orbit_figures(other, orbit)
             fluctuation[k], contact[k] = figures['fluctuation_pct'], figures['min_contact_force']
             if k % _STEP == 0:

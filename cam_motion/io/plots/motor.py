@@ -83,6 +83,42 @@ def motor_figure(settings: CamDriveSettings, orbit: Orbit) -> Figure:
     return figure
 
 
+def recorded_motor_figure(settings: CamDriveSettings, speed: Array, torque: Array) -> Figure:
+    """
+    Draw the recorded torque over speed of a motor that turns the shaft, beside its curve.
+
+    Parameters
+    ----------
+    settings : CamDriveSettings
+        The drive.
+    speed, torque : ndarray, shape (n,)
+        Recorded speeds [rad/s] and torques [N m] of the motor shaft, brake included.
+
+    Returns
+    -------
+    Figure
+        Motor speed [rpm] across, torque at the motor shaft [N m] up.
+
+    """
+    motor = settings.drive.motor
+    low, high = min(0.0, float(speed.min())), max(motor.synchronous_speed, float(speed.max()))
+    speeds = np.linspace(low, high + 0.03 * (high - low), 401)
+    with styled():
+        figure = new_figure(5.0)
+        plane = figure.subplots()
+        plane.axhline(0.0, color='#444444', linewidth=0.8)
+        plane.plot(speeds / RPM, motor.torque(speeds), color=COLOURS[0], label='motor')
+        plane.plot(speed / RPM, torque, '.', color=COLOURS[1], markersize=5.0,
+                   markeredgewidth=0.0, alpha=0.7,
+                   label=f'{len(speed)} recorded states, start-up and braking included')
+        plane.set_xlabel('motor speed n [rpm]')
+        plane.set_ylabel('torque at the motor shaft T [N m]')
+        plane.set_title(f'{settings.name}: recorded torque over speed')
+        plane.margins(0.06)
+        figure.legend(loc='outside lower left', ncols=1)
+    return figure
+
+
 def _draw_loop(panel: Axes, settings: CamDriveSettings, orbit: Orbit) -> None:
     """Draw what the load takes of the motor shaft over its speed, round the revolution."""
     drive = settings.drive

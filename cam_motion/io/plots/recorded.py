@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cam_motion.io.comparison import AxisReport, QUANTITIES, TOLERANCE, TOLERANCE_TEXT
+from cam_motion.io.plots.motor import recorded_motor_figure
 from cam_motion.io.plots.style import COLOURS, exact_curve, GREY, new_figure, styled
 from cam_motion.io.plots.torque import torque_curve, torque_figure
 from cam_motion.io.report import Report
@@ -140,11 +141,16 @@ def recorded_torque_figure(report: Report, name: str) -> Figure:
         Motor speed [rpm] across, motor torque [N m] up.
 
     """
-    settings = report.recording.machine.drives[name]
-    axis = report.recording.machine.diagram.axes[settings.axis]
+    machine = report.recording.machine
+    if name in machine.cam_drives:
+        states = report.drives[name]
+        return recorded_motor_figure(
+            machine.cam_drives[name], states.motor_speed, states.motor_torque)
+    settings = machine.drives[name]
+    axis = machine.diagram.axes[settings.axis]
     drive = report.drives[name]
     figure = torque_figure(name, [torque_curve(settings, axis, report.top_speed)], (
-        drive.motor_speed, drive.motor_torque))
+        drive.motor_speed, drive.motor_torque), settings.motor)
     return figure
 
 

@@ -1,0 +1,187 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""Whether axes keep their limits at the set speed, those that follow other axes included."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+import math
+
+from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io.axis import build_axis, CoupledAxis, Values
+from cam_motion.motion.limits import Limits, QUANTITIES, SpeedBound
+from cam_motion.runtime.demand import Demand
+from cam_motion.runtime.motion_over_angle import Cascade, Motion
+from cam_motion.runtime.ramp import RampLimits
+from cam_motion.runtime.ramp_room import RampRoom
+from cam_motion.units import DEGREE, rate_text, RPM
+
+_STEADY = RampLimits(0.0, 0.0)
+SHAFT = 'shaft'
+
+
+@dataclass(frozen=True)
+class CascadedAxis(CoupledAxis):
+    """
+    An axis that follows another one.
+
+    Attributes
+    ----------
+    motion : Motion
+        Its motion over the angle of the shaft, through all axes between.
+    period : float
+        Shaft angle after which the motion repeats [rad].
+
+    """
+
+    motion: Motion = field(kw_only=True)
+    period: float = field(kw_only=True)
+
+    def bound_by(self, limits: Limits) -> SpeedBound | None:
+        """
+        Find the highest steady shaft speed within given limits.
+
+        Parameters
+        ----------
+        limits : Limits
+            The limits.
+
+        Returns
+        -------
+        SpeedBound | None
+            The speed and what holds it there; None where nothing does.
+
+        """
+        omega = Demand(self.motion, 0.0, self.period).highest_speed(limits, _STEADY)
+        if math.isinf(omega):
+            return None
+        names = [name for order, name in enumerate(QUANTITIES[1:], 1) if limits.of_order(order)]
+        limit = limits.of_order(QUANTITIES.index(names[0])) if len(names) == 1 else None
+        return SpeedBound(omega, names[0], math.nan if limit is None else limit,
+                          f'behind {self.values["follows"]}', math.nan)
+
+
+def in_cascade(axes: Mapping[str, CoupledAxis | None], problems: list[Problem],
+               ) -> dict[str, CoupledAxis | None]:
+    """
+    Join axes that follow others to what these do.
+
+    Parameters
+    ----------
+    axes : Mapping[str, CoupledAxis | None]
+        The axes by name; None for one that could not be built.
+    problems : list[Problem]
+        Gets what is wrong: an axis that follows none of the line, or, in the end, itself.
+
+    Returns
+    -------
+    dict[str, CoupledAxis | None]
+        The axes, those in cascade with their motion over the angle of the shaft.
+
+    """
+    found: dict[str, CoupledAxis | None] = {}
+    for name, axis in axes.items():
+        found[name] = axis
+        chain = [name]
+        while axis is not None and (source := axis.values['follows']) != SHAFT:
+            if source not in axes or source in chain:
+                problems.append(Problem(
+                    f'{name}.follows', source, 'must name the shaft, or an axis of the line that '
+                    'does not itself follow this one', 'known are: ' + ', '.join([SHAFT, *axes])))
+                break
+            chain.append(source)
+            axis = axes[source]
+        else:
+            if len(chain) > 1 and axis is not None:
+                found[name] = _cascaded([axes[link] for link in chain])
+    return found
+
+
+def _cascaded(chain: list[CoupledAxis | None]) -> CoupledAxis | None:
+    """Join an axis to those that it follows, the one on the shaft last."""
+    links = [link for link in chain if link is not None]
+    if len(links) < len(chain):
+        return chain[0]
+    motion: Motion = links[-1].layout.motion
+    for link in reversed(links[:-1]):
+        motion = Cascade(link.layout.motion, motion)
+    own = {name: getattr(links[0], name) for name in CoupledAxis.__dataclass_fields__}
+    return CascadedAxis(**own, motion=motion, period=links[-1].layout.period)
+
+
+def ramp_room(sections: Mapping[str, Values]) -> RampRoom:
+    """
+    Find the room that the limits of axes leave for the acceleration of the shaft.
+
+    Parameters
+    ----------
+    sections : Mapping[str, Mapping[str, Any]]
+        Parameters of the axes, by name; what cannot be used is left out, its node says why.
+
+    Returns
+    -------
+    RampRoom
+        The room.
+
+    """
+    axes: dict[str, CoupledAxis | None] = {}
+    for name, section in sections.items():
+        try:
+            axes[name] = build_axis(name, section)
+        except ConfigurationError:
+            axes[name] = None
+    found = in_cascade(axes, []).values()
+    return RampRoom(
+        (axis.motion, axis.period, axis.limits) if isinstance(axis, CascadedAxis)
+        else (axis.layout.motion, axis.layout.period, axis.limits)
+        for axis in found if axis is not None)
+
+
+def speed_problems(axis: CoupledAxis, omega: float) -> list[Problem]:
+    """
+    Check whether an axis keeps its limits at a steady shaft speed.
+
+    Parameters
+    ----------
+    axis : CoupledAxis
+        The axis.
+    omega : float
+        Speed of the shaft [rad/s].
+
+    Returns
+    -------
+    list[Problem]
+        One problem per limit that would break, with the figures.
+
+    """
+    problems = []
+    for order, quantity in enumerate(QUANTITIES[1:], start=1):
+        limit = axis.limits.of_order(order)
+        if limit is None:
+            continue
+        bound = axis.bound_by(Limits(**{quantity: limit}))
+        if bound is None or abs(omega) <= bound.omega * (1.0 + 1e-9):
+            continue
+        unit = rate_text(axis.unit, order)
+        where = f'segment {bound.segment} at {bound.at / DEGREE:.4g} deg'
+        if math.isnan(bound.at):
+            where = bound.segment  # several cams, or axes in cascade, found on a grid
+        if bound.omega == 0.0:
+            rule = f'the acceleration steps in {where}: no jerk limit can be met'
+            hint = 'take a law whose acceleration is continuous, or leave the jerk unlimited'
+        else:
+            # a product grows to infinity where a power would raise
+            needed = limit * math.prod([abs(omega) / bound.omega] * order)
+            rule = (f'at {abs(omega) / RPM:g} cycles/min {where} needs {needed:.6g} {unit}')
+            # cut, not rounded: the figure given must itself be allowed
+            most = math.floor(bound.omega / RPM * 100.0) / 100.0
+            hint = (f'run at most {most:.2f} cycles/min, raise the limit, or give '
+                    'the segment more angle or another law')
+        problems.append(Problem(f'{axis.name}.limits.{quantity}', limit, rule, hint))
+    return problems

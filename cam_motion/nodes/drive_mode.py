@@ -1,0 +1,227 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""What a drive does: the protocol of its modes, and what those that take setpoints share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+from cam_motion.io.parameters import ParameterSpec
+from cam_motion.nodes import diagnostics
+from cam_motion.nodes.managed_node import ManagedNode
+from cam_motion.nodes.qos import SETPOINTS
+from cam_motion.nodes.shaft_ticker import Listener
+from cam_motion.nodes.wire import unpack_point
+from cam_motion.runtime.point import Point
+from cam_motion.runtime.ticks import NANOSECONDS
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+
+class DriveMode:
+    """
+    What a drive does; a `DriveSim` holds one, chosen by its parameter ``mode``.
+
+    A mode is made and configured when the node is configured, activated and deactivated with it,
+    and cleaned up with it, be it after a configuration that failed. What it makes by the node's
+    `make_publisher`, `make_subscription` and `make_service` the node destroys; what it makes
+    otherwise, such as timers, is its own to destroy in `cleanup`.
+
+    Parameters
+    ----------
+    node : ManagedNode
+        The node that holds it: its name, clocks, logger, topics and state.
+    own_process : bool
+        Whether setpoints come over topics; else the owner of the process calls `answer`.
+
+    Attributes
+    ----------
+    axis : str
+        Name of the axis that the drive moves; known when configured.
+    listeners : list[Callable[[Point], None]]
+        To be called with every point of the shaft, by a mode that turns one.
+    section : Callable[[str], Mapping[str, Any]] | None
+        Gives the parameters of another node of the same process; None in a process of its own.
+
+    """
+
+    TURNS_SHAFT: ClassVar[bool] = False
+    """Whether the drive turns the shaft itself, so that no master does."""
+
+    def __init__(self, node: ManagedNode, own_process: bool) -> None:
+        """Keep the node; everything else waits for the configuration."""
+        self.node = node
+        self.own_process = own_process
+        self.axis = ''
+        self.listeners: list[Listener] = []
+        self.section: Callable[[str], Mapping[str, Any]] | None = None
+
+    @classmethod
+    def table(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
+        """
+        List the parameters of a drive in this mode.
+
+        Parameters
+        ----------
+        given : Mapping[str, Any]
+            What the node has been given, by flat name: a table may depend on it.
+
+        Returns
+        -------
+        tuple[ParameterSpec, ...]
+            The parameters, ``mode`` and ``autostart`` among them.
+
+        """
+        raise NotImplementedError
+
+    def configure(self, values: Mapping[str, Any]) -> None:
+        """
+        Build the drive from its parameters; make topics and services.
+
+        Parameters
+        ----------
+        values : Mapping[str, Any]
+            All parameters by flat name, as given: to be checked here.
+
+        Raises
+        ------
+        ConfigurationError
+            With every problem, paths relative to the node.
+
+        """
+        raise NotImplementedError
+
+    def activate(self) -> None:
+        """Begin to work."""
+
+    def answer(self, setpoint: Point) -> None:
+        """
+        Answer a setpoint of the axis; a mode that follows none leaves it out.
+
+        Parameters
+        ----------
+        setpoint : Point
+            Position, velocity and acceleration of the axis.
+
+        """
+
+    def deactivate(self) -> None:
+        """Cease to work; a drive that others follow leaves a hold point behind."""
+
+    def begin_stop(self) -> None:
+        """Begin to come to rest: the process is to end. Called whether active or not."""
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the drive has come to rest, as far as that is its own doing."""
+        return True
+
+    def health(self) -> tuple[bytes, Mapping[str, Any]]:
+        """
+        Say how the drive is.
+
+        Returns
+        -------
+        tuple[bytes, Mapping[str, Any]]
+            Level and figures of the diagnostics.
+
+        """
+        return diagnostics.OK, {}
+
+    def cleanup(self) -> None:
+        """Drop what `configure` has made without the node, be it only half of it."""
+
+
+class SetpointMode(DriveMode):
+    """
+    A mode that answers the setpoints of an axis, which it gets by topic or by `answer`.
+
+    Subclasses implement `respond`; `listen_to` is the last step of their `configure`.
+
+    Attributes
+    ----------
+    answered, refused : int
+        Setpoints answered, and points left out because they are none.
+
+    """
+
+    def __init__(self, node: ManagedNode, own_process: bool) -> None:
+        """Know no setpoint yet."""
+        super().__init__(node, own_process)
+        self.answered = 0
+        self.refused = 0
+        self._epoch_ns: int | None = None  # node time at which the machine's time base began
+
+    def respond(self, setpoint: Point, stamp_ns: int) -> None:
+        """
+        Do what the drive does with a setpoint, and publish it.
+
+        Parameters
+        ----------
+        setpoint : Point
+            Position, velocity and acceleration of the axis.
+        stamp_ns : int
+            When it was due, in the node's time [ns].
+
+        """
+        raise NotImplementedError
+
+    def listen_to(self, axis: str) -> None:
+        """
+        Follow an axis from now on.
+
+        Parameters
+        ----------
+        axis : str
+            Its name.
+
+        """
+        self.axis = axis
+        if self.own_process:
+            self.node.make_subscription(
+                JointTrajectoryPoint, f'{axis}/setpoint', self._on_setpoint, SETPOINTS, raw=True)
+
+    def activate(self) -> None:
+        """Wait for setpoints."""
+        self._epoch_ns = None
+        self.node.set_state('waiting')
+
+    def answer(self, setpoint: Point) -> None:
+        """
+        Answer a setpoint of the axis, if active.
+
+        Parameters
+        ----------
+        setpoint : Point
+            Position, velocity and acceleration of the axis.
+
+        """
+        if not self.node.active:
+            return
+        time_ns = setpoint.sec * NANOSECONDS + setpoint.nanosec
+        if self._epoch_ns is None or self._clock_started_over(time_ns):
+            self._epoch_ns = self.node.get_clock().now().nanoseconds - time_ns
+            self.node.set_state('following')
+        self.respond(setpoint, self._epoch_ns + time_ns)
+        self.answered += 1
+
+    def _clock_started_over(self, time_ns: int) -> bool:
+        """Tell whether /clock has jumped back: the machine's time base goes on, stamps do not."""
+        if not self.node.sim_time:
+            return False
+        return self.node.get_clock().now().nanoseconds < self._epoch_ns + time_ns - NANOSECONDS
+
+    def _on_setpoint(self, data: bytes) -> None:
+        setpoint = unpack_point(data)
+        if setpoint is not None:
+            self.answer(setpoint)
+            return
+        self.refused += 1
+        self.node.get_logger().warning(
+            'setpoint: a point without exactly one finite position, velocity and acceleration '
+            'was left out', throttle_duration_sec=1.0)

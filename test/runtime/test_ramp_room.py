@@ -1,0 +1,85 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""Ramps of the shaft that keep the limits of all axes, as long as they last."""
+
+from cam_motion.motion.limits import Limits
+from cam_motion.motion.profile import CamProfile
+from cam_motion.motion.segment import segment
+from cam_motion.runtime.demand import Demand
+from cam_motion.runtime.motion_over_angle import CoupledCam
+from cam_motion.runtime.ramp import RampLimits
+from cam_motion.runtime.ramp_room import RampRoom
+from cam_motion.runtime.shaft import Shaft
+from cam_motion.units import TURN
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.timeout(60)
+
+RAMP = RampLimits(30.0, 300.0)
+SLACK = 1e-3  # the points of a demand miss up to this share of a peak
+CAM = CoupledCam(CamProfile([
+    segment('up', end_deg=120.0, lift=0.2, law='cycloidal'),
+    segment('down', end_deg=300.0, lift=-0.2, law='cycloidal'),
+    segment('rest', end_deg=360.0)]))
+PEAKS = Demand(CAM, 0.0, TURN).peaks(1.0, RampLimits(0.0, 0.0))
+
+
+def worst(shaft, begin, end):
+    """Give the largest share of acceleration and jerk that a ramp takes, at any cam angle."""
+    _, y1, y2, y3 = Demand(CAM, 0.0, TURN).values
+    found = []
+    for t in np.linspace(begin, end, 400):
+        state, later = shaft.state(t), shaft.state(t + 1e-6)
+        omega, alpha = abs(state.omega), abs(state.alpha)
+        jerk = abs(later.alpha - state.alpha) / 1e-6
+        found.append((np.max(y2 * omega ** 2 + y1 * alpha),
+                      np.max(y3 * omega ** 3 + 3.0 * y2 * omega * alpha + y1 * jerk)))
+    return np.max(found, axis=0)
+
+
+@given(st.floats(5.0, 25.0), st.sampled_from([0.0, 1e-3, 0.02, 0.5]), st.booleans(),
+       st.lists(st.tuples(st.floats(0.02, 2.0), st.floats(0.0, 1.0)), max_size=3))
+@settings(max_examples=30, deadline=None)
+def test_no_axis_breaks_its_limits_on_any_ramp(omega, room, with_jerk, changes):
+    """From rest up to the highest speed allowed, and through changes of speed on the way."""
+    limits = Limits(acceleration=PEAKS.acceleration * omega ** 2 * (1.0 + room),
+                    jerk=PEAKS.jerk * omega ** 3 * (1.0 + room) if with_jerk else None)
+    shaft = Shaft(omega, RAMP, RAMP)
+    shaft.room = RampRoom([(CAM, TURN, limits)])
+    shaft.allow(0.0, omega)
+    t = 0.0
+    shaft.run(t)
+    for wait, share in [*changes, (0.0, 1.0)]:
+        check(shaft, t, t + wait, limits)
+        t += wait
+        shaft.set_speed(t, share * omega)
+    check(shaft, t, min(shaft.settled_at, t + 60.0), limits)
+    shaft.stop(shaft.settled_at)
+    check(shaft, shaft.settled_at - 1.0, shaft.settled_at, limits)
+
+
+def check(shaft, begin, end, limits):
+    """Check a stretch of time."""
+    if end <= begin:
+        return
+    acceleration, jerk = worst(shaft, begin, end)
+    assert acceleration <= limits.acceleration * (1.0 + SLACK)
+    assert limits.jerk is None or jerk <= limits.jerk * (1.0 + 5.0 * SLACK)
+
+
+def test_without_need_nothing_is_softened():
+    """Limits with room leave the ramp as it was asked for; tight ones make it gentler."""
+    wide = RampRoom([(CAM, TURN, Limits(acceleration=1e4))])
+    assert wide.soften(20.0, RAMP) == RAMP
+    tight = RampRoom([(CAM, TURN, Limits(acceleration=PEAKS.acceleration * 400.0 * 1.0005))])
+    softer = tight.soften(20.0, RAMP)
+    assert softer.acceleration < RAMP.acceleration
+    assert softer.jerk / softer.acceleration == pytest.approx(10.0)
