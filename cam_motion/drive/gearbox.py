@@ -31,6 +31,10 @@ class Gearbox:
         power flows.
     inertia : float
         Inertia reduced to the load shaft [kg m²]; not negative.
+    rated_torque : float | None
+        Torque that it may pass on at the load shaft [N m]; None where it is not known.
+    max_speed : float | None
+        Speed at which its motor side may turn [rad/s]; None where it is not known.
 
     Raises
     ------
@@ -47,6 +51,8 @@ class Gearbox:
     ratio: float = 1.0
     efficiency: float = 1.0
     inertia: float = 0.0
+    rated_torque: float | None = None
+    max_speed: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse figures that make no gearbox."""
@@ -59,6 +65,11 @@ class Gearbox:
                 'a gearbox gives no power: write 0.9 for 90 %'))
         if not (math.isfinite(self.inertia) and self.inertia >= 0.0):
             problems.append(Problem('inertia', self.inertia, 'must be at least 0 kg m²'))
+        problems += [
+            Problem(name, value, 'must be a finite number above 0', 'leave out what is not known')
+            for name, value in (
+                ('rated_torque', self.rated_torque), ('max_speed', self.max_speed))
+            if value is not None and not (math.isfinite(value) and value > 0.0)]
         if problems:
             raise ConfigurationError(problems)
 

@@ -137,6 +137,61 @@ class Friction(_Smooth):
         return self.coulomb * np.sign(at.s1) + self.viscous * at.s1 * omega
 
 
+def _check_window(window: tuple[float, float]) -> None:
+    """Refuse a window that is none."""
+    first, last = window
+    if not 0.0 <= first <= last <= TURN * (1.0 + 1e-12):
+        raise ConfigurationError([Problem(
+            'window', window, 'must be two rising angles within one turn')])
+
+
+@dataclass(frozen=True)
+class Process:
+    """
+    What the product does to the machine while the shaft angle lies in a window.
+
+    Attributes
+    ----------
+    force : float
+        Force against the rise of the follower [N].
+    moment : float
+        Moment on the shaft against turning forwards [N m].
+    window : tuple[float, float]
+        First and last shaft angle of the window, within one turn [rad].
+
+    Raises
+    ------
+    ConfigurationError
+        When the window is none.
+
+    """
+
+    force: float = 0.0
+    moment: float = 0.0
+    window: tuple[float, float] = (0.0, TURN)
+
+    def __post_init__(self) -> None:
+        """Refuse a window that is none."""
+        _check_window(self.window)
+
+    def _acts(self, at: Follower) -> Array:
+        first, last = self.window
+        return np.asarray((at.q >= first) & (at.q <= last), dtype=float)
+
+    def terms(self, at: Follower) -> Terms:
+        """Give Q = -F s' - M inside the window."""
+        zero = np.zeros_like(at.q)
+        return Terms(zero, zero, -self._acts(at) * (self.force * at.s1 + self.moment), zero)
+
+    def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
+        """Give the force of the process."""
+        return self._acts(at) * self.force
+
+    def edges(self) -> tuple[float, ...]:
+        """Give the ends of the window [rad]."""
+        return self.window
+
+
 @dataclass(frozen=True)
 class Lever:
     """
@@ -170,10 +225,7 @@ class Lever:
 
     def __post_init__(self) -> None:
         """Refuse a window that is none."""
-        first, last = self.window
-        if not 0.0 <= first <= last <= TURN * (1.0 + 1e-12):
-            raise ConfigurationError([Problem(
-                'window', self.window, 'must be two rising angles within one turn')])
+        _check_window(self.window)
 
     def ratios(self, at: Follower) -> tuple[Array, Array, Array]:
         """

@@ -19,6 +19,7 @@ from cam_motion.drive.cells import LoadTable
 from cam_motion.drive.collocation import gauss_rule
 from cam_motion.drive.course import Course
 from cam_motion.drive.designs import Designs, Shafts
+from cam_motion.drive.load import Follower
 from cam_motion.drive.passage import settle
 from cam_motion.drive.stretch import least, least_contact_force, passing, Stretch
 from cam_motion.errors import CamMotionError, ConfigurationError
@@ -92,6 +93,18 @@ class Orbit:
             torque = drive.motor.torque(drive.gearbox.ratio / stretch.slowness)
             total += drive.gearbox.ratio * stretch.span * float(rule.weights @ torque)
         return total
+
+    @cached_property
+    def peak_gearbox_torque(self) -> float:
+        """Find the largest magnitude of the torque between gearbox and cam shaft [N m]."""
+        drive = self.stretches[0].drive
+        own = (drive.motor.inertia + drive.flywheel) * drive.gearbox.ratio ** 2
+
+        def passed(at: Follower, omega: Array) -> Array:
+            # what the motor gives, without what rotor and flywheel take up themselves
+            torque = drive.motor_torque(omega) - own * drive.acceleration(at, omega)
+            return np.asarray(np.abs(torque))
+        return least(self.stretches, passed, -1.0)
 
     def power_reversals(self) -> list[float]:
         """

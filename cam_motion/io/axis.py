@@ -247,7 +247,8 @@ def _build_cam(given: Values) -> tuple[CamProfile, Coupling]:
     """Compile one cam with its coupling; keys that belong to the axis are passed over."""
     names = names_in(given, 'segments')
     own, below = split_below(given, names)
-    known = {spec.name for spec in axis_parameters.CAM_AXIS} - {spec.name for spec in axis_parameters.CAM}
+    of_cam = {spec.name for spec in axis_parameters.CAM}
+    known = {spec.name for spec in axis_parameters.CAM_AXIS} - of_cam
     values, problems = check_values(
         axis_parameters.CAM, {key: value for key, value in own.items() if key not in known})
     problems += [

@@ -19,6 +19,7 @@ from cam_motion.drive.load import (
     Friction,
     Lever,
     Part,
+    Process,
     RotatingInertia,
     Spring,
     TranslatingMass,
@@ -185,6 +186,8 @@ def _build_part(given: Mapping[str, Any]) -> Part:
     if kind == 'friction':
         return Friction(values['viscous'], values['coulomb'])
     first, last = (angle * DEGREE for angle in values['window_deg'])
+    if kind == 'process':
+        return Process(values['force'], values['moment'], (first, last))
     return Lever(values['inertia'], values['arm'], values['height'], values['moment'],
                  (first, last))
 
@@ -219,5 +222,7 @@ def _motor(values: Mapping[str, Any]) -> InductionMotor | KlossMotor:
 
 
 def _gearbox(values: Mapping[str, Any]) -> Gearbox:
+    most = values['gearbox.max_rpm']
     return Gearbox(values['gearbox.ratio'], values['gearbox.efficiency'],
-                   values['gearbox.inertia'])
+                   values['gearbox.inertia'], values['gearbox.rated_torque'],
+                   None if most is None else most * RPM)

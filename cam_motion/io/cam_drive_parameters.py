@@ -34,6 +34,10 @@ CAM_DRIVE = (
     _number('gearbox.efficiency', 'Efficiency of the gearbox.', '', 1.0, above=0.0, most=1.0),
     _number('gearbox.inertia', 'Inertia of the gearbox at the cam shaft.', 'kg m²', 0.0,
             least=0.0),
+    _number('gearbox.rated_torque', 'Torque that the gearbox may pass on at the cam shaft; left '
+            'out it is not looked at.', 'N m', None, above=0.0),
+    _number('gearbox.max_rpm', 'Speed at which its motor side may turn.', 'rpm', None,
+            above=0.0),
     _number('motor.synchronous_rpm', 'Synchronous speed.', 'rpm', above=0.0),
     _number('motor.rated_rpm', 'Rated speed.', 'rpm', None, above=0.0),
     _number('motor.rated_torque', 'Rated torque; with rated_rpm it stands for the breakdown slip.',
@@ -57,7 +61,10 @@ CAM_DRIVE = (
 """Parameters of a drive that turns a cam shaft; its parts have theirs below their names."""
 
 KIND = ParameterSpec('type', 'string', REQUIRED, 'Kind of the part.', choices=(
-    'inertia', 'mass', 'spring', 'friction', 'lever'))
+    'inertia', 'mass', 'spring', 'friction', 'process', 'lever'))
+
+_WINDOW = ParameterSpec('window_deg', 'double_list', [0.0, 360.0],
+                        'First and last shaft angle at which it acts.', 'deg')
 
 PARTS: dict[str, tuple[ParameterSpec, ...]] = {
     'inertia': (KIND, _number('inertia', 'Inertia on the cam shaft.', 'kg m²', least=0.0)),
@@ -67,12 +74,14 @@ PARTS: dict[str, tuple[ParameterSpec, ...]] = {
                _number('preload', 'Compression at s = 0.', 'm', 0.0)),
     'friction': (KIND, _number('viscous', 'Viscous friction.', 'N s/m', 0.0, least=0.0),
                  _number('coulomb', 'Coulomb friction.', 'N', 0.0, least=0.0)),
+    'process': (KIND, _number('force', 'Force against the rise of the follower.', 'N', 0.0),
+                _number('moment', 'Moment on the cam shaft against turning forwards.', 'N m',
+                        0.0), _WINDOW),
     'lever': (KIND, _number('inertia', 'Inertia about the bearing.', 'kg m²', least=0.0),
               _number('arm', 'Length.', 'm', above=0.0),
               _number('height', 'Height of the slider over the bearing at s = 0.', 'm'),
               _number('moment', 'Moment against the lever.', 'N m', 0.0),
-              ParameterSpec('window_deg', 'double_list', [0.0, 360.0],
-                            'First and last shaft angle of the moment.', 'deg')),
+              _WINDOW),
 }
 """Parameters of the parts of a load, by their type."""
 

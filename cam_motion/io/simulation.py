@@ -14,6 +14,7 @@ from typing import Any
 
 from cam_motion.drive.cycle import cycle_figures
 from cam_motion.drive.document_004 import document_metrics
+from cam_motion.drive.gearbox import Gearbox
 from cam_motion.drive.orbit import find_orbit, NoOrbitError, Orbit
 from cam_motion.drive.servo_cycle import limit_figures, servo_cycle, ServoCycle
 from cam_motion.drive.start_up import StallError, start_up, StartUp
@@ -168,7 +169,19 @@ def orbit_figures(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
         'period_s': orbit.period, 'min_speed_rpm': low / RPM, 'max_speed_rpm': high / RPM,
         'min_contact_force': orbit.least_contact_force(settings.base),
         'motor_work_per_cycle': orbit.motor_work,
+        'peak_gearbox_torque': orbit.peak_gearbox_torque,
+        **_gearbox_margins(drive.gearbox, orbit.peak_gearbox_torque, high),
     }
+
+
+def _gearbox_margins(gearbox: Gearbox, torque: float, speed: float) -> dict[str, float]:
+    """Give what is left to the limits of a gearbox, where they are known."""
+    margins = {}
+    if gearbox.rated_torque is not None:
+        margins['gearbox_torque_margin'] = gearbox.rated_torque - torque
+    if gearbox.max_speed is not None:
+        margins['gearbox_speed_margin_rpm'] = (gearbox.max_speed - gearbox.ratio * speed) / RPM
+    return margins
 
 
 def start_up_figures(settings: CamDriveSettings, orbit: Orbit, run: StartUp) -> dict[str, Any]:

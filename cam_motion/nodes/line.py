@@ -133,7 +133,8 @@ def make_line(**options: Any) -> list[ManagedNode]:
         source = axes.get(values_of(axis).get('follows', ''), master)
         source.listeners.append(axis.answer)
         if isinstance(master, MasterShaft):
-            master.sections = lambda: {name: values_of(node) for name, node in axes.items()}
+            master.sections = lambda: {
+                name: own_values(values_of(node)) for name, node in axes.items()}
             axis.bound_listeners.append(partial(master.obey, axis.get_name()))
     for drive in drives:
         drive.section = lambda name: own_values(values_of(axes[name])) if name in axes else {}

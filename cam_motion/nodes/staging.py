@@ -15,9 +15,9 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import axis_table, build_axis, CoupledAxis
-from cam_motion.io.axis_limits import SHAFT
 from cam_motion.io.config import flatten, parse_yaml
-from cam_motion.io.format_parameters import FIXED, STAGED
+from cam_motion.io.format_change import check_fixed
+from cam_motion.io.format_parameters import STAGED
 from cam_motion.io.parameters import REQUIRED
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.parameters import describe, values_of
@@ -230,33 +230,6 @@ class Staging:
             overwrite(self._node, given)
         finally:
             self._node.own_change = False
-
-
-def check_fixed(before: CoupledAxis, after: CoupledAxis) -> None:
-    """
-    Check that a format leaves alone what is no part of a format.
-
-    Parameters
-    ----------
-    before, after : CoupledAxis
-        The axis as it is, and as it is to be.
-
-    Raises
-    ------
-    ConfigurationError
-        With every parameter that would have to change.
-
-    """
-    problems = [
-        Problem(key, after.values[key], f'is no part of a format: it is {before.values[key]!r} '
-                'until the axis is started anew')
-        for key in FIXED if after.values[key] != before.values[key]]
-    if before.values['follows'] != SHAFT:
-        problems.append(Problem(
-            'follows', before.values['follows'], 'only an axis that follows the shaft itself '
-            'knows at which shaft angle to change'))
-    if problems:
-        raise ConfigurationError(problems)
 
 
 def overwrite(node: Node, given: Mapping[str, Any]) -> None:

@@ -21,7 +21,10 @@ import numpy as np
 SHORTEST = 2e-4
 """Points closer to each other than this are one [s]."""
 
+_APART = 0.99 * SHORTEST  # but for rounding
 _ITERATIONS = 8  # of Newton's method, for a time within a few steps of a smooth motion
+_ROUNDING = 1e-12  # of an angle
+_NEAR = 1e-7  # how far before and behind a joint its two sides are looked at [rad]
 
 
 class AheadPoint(NamedTuple):
@@ -90,7 +93,8 @@ def look_ahead(motion: Motion, shaft: ShaftMotion, times: Sequence[float]) -> li
     Sample the motion of an axis ahead, at given times and at the joints between them.
 
     At a joint a derivative steps: of a curve that is smooth between its points a quintic through
-    position, velocity and acceleration misses next to nothing, across a joint it does.
+    position, velocity and acceleration misses next to nothing, across a joint it does. Where the
+    acceleration itself steps there is a point on either side.
 
     Parameters
     ----------
@@ -108,21 +112,23 @@ def look_ahead(motion: Motion, shaft: ShaftMotion, times: Sequence[float]) -> li
         others give way to a joint that is as close.
 
     """
-    marks = [*times[:1]]
+    marks = [times[0]]
     joints = _joint_times(motion, shaft, times[0], times[-1])
     inner = sorted([*((t, False) for t in times[1:-1]), *((t, True) for t in joints)])
     joint_before = True
     for t, is_joint in inner:
-        if t - marks[-1] >= SHORTEST:
+        if t - marks[-1] >= _APART:
             marks.append(t)
+        elif is_joint and len(marks) == 1:
+            marks.append(marks[0] + SHORTEST)
         elif is_joint and not joint_before:
             marks[-1] = t
         else:
             continue
         joint_before = is_joint
-    while len(marks) > 1 and times[-1] - marks[-1] < SHORTEST:
+    while len(marks) > 1 and times[-1] - marks[-1] < _APART:
         marks.pop()
-    return [_point(motion, shaft, t) for t in [*marks, *times[-1:]]]
+    return [_point(motion, shaft, t) for t in [*marks, times[-1]]]
 
 
 def _point(motion: Motion, shaft: ShaftMotion, t: float) -> AheadPoint:
@@ -138,15 +144,25 @@ def _joint_times(motion: Motion, shaft: ShaftMotion, start: float, end: float) -
     if low == high:
         return []
     found = []
-    for phi in np.unique(motion.joints(low, high)):
-        t = start + (end - start) * (float(phi) - first.phi) / (last.phi - first.phi)
+    room = _ROUNDING * (1.0 + abs(low))
+    for phi in map(float, np.unique(motion.joints(low - room, high + room))):
+        t = start + (end - start) * (phi - first.phi) / (last.phi - first.phi)
         for _ in range(_ITERATIONS):
             state = shaft.state(t)
             if state.omega == 0.0:
                 break
-            step = (float(phi) - state.phi) / state.omega
+            step = (phi - state.phi) / state.omega
             t = min(max(t + step, start), end)
-            if abs(step) < 1e-12:
-                found.append(t)
+            if abs(step) < SHORTEST * 1e-4:
+                aside = 0.5 * SHORTEST if _acceleration_steps(motion, phi) else 0.0
+                found += [t - aside, t + aside] if aside else [t]
                 break
     return found
+
+
+def _acceleration_steps(motion: Motion, phi: float) -> bool:
+    """Tell whether the second derivative steps at a joint, and not only the third."""
+    _, _, before, jerk_before = motion.sample(phi - _NEAR)
+    _, _, behind, jerk_behind = motion.sample(phi + _NEAR)
+    smooth = 3.0 * _NEAR * (abs(jerk_before) + abs(jerk_behind))
+    return abs(behind - before) > smooth + 1e-6 * (abs(before) + abs(behind))

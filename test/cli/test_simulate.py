@@ -47,7 +47,7 @@ def test_press_drive_by_its_motion_and_by_the_documents_definitions(cam_motion, 
         'fluctuation_pct': 5.76756715, 'stability_pct': 84.06723792,
         'running_cost_pct': 9.45952673, 'period_s': 0.14506626, 'min_speed_rpm': 401.04650223,
         'max_speed_rpm': 424.11677083, 'min_contact_force': 774.14855577,
-        'motor_work_per_cycle': 76.38384606}, rel=1e-8)
+        'motor_work_per_cycle': 76.38384606, 'peak_gearbox_torque': 68.38390280}, rel=1e-8)
     assert data['start_up'] == pytest.approx({
         'first_crossing_s': 0.65131034, 'settled_s': 0.74384388,
         'min_contact_force': 514.194993}, rel=1e-7)

@@ -14,10 +14,12 @@ from cam_motion.drive.load import (
     Friction,
     GRAVITY,
     Lever,
+    Process,
     RotatingInertia,
     Spring,
     TranslatingMass,
 )
+from cam_motion.errors import ConfigurationError
 from cam_motion.units import TURN
 from hypothesis import given
 from hypothesis import strategies as st
@@ -38,6 +40,7 @@ PARTS = {
     'friction': Friction(viscous=30.0, coulomb=12.0),
     'lever': Lever(0.05, 0.18, 0.148),
     'loaded lever': Lever(0.05, 0.18, 0.148, 150.0, (0.0, 5.0 * pi / 6.0)),
+    'process': Process(400.0, 0.0, (0.5, 2.5)),
     'short lever': Lever(0.2, 0.1, 0.03, 40.0, (1.0, 5.0)),
 }
 MOVED = {name: part for name, part in PARTS.items() if name != 'inertia'}
@@ -168,9 +171,19 @@ def test_the_moment_acts_within_its_window_ends_included():
     assert lever.moment_at(Follower(q, zero, zero, zero)).tolist() == [0, 0, 40, 40, 40, 0]
 
 
-def test_only_a_moment_has_edges():
+def test_only_what_acts_in_a_window_has_edges():
     edges = {name: part.edges() for name, part in PARTS.items() if part.edges()}
-    assert edges == {'loaded lever': (0.0, 5.0 * pi / 6.0), 'short lever': (1.0, 5.0)}
+    assert edges == {'loaded lever': (0.0, 5.0 * pi / 6.0), 'short lever': (1.0, 5.0),
+                     'process': (0.5, 2.5)}
+    with pytest.raises(ConfigurationError, match='window'):
+        Process(force=1.0, window=(2.0, 1.0))
+
+
+def test_a_process_acts_inside_its_window_only(press_profile):
+    at = follower(press_profile, np.array([0.4, 0.6, 2.4, 2.6]))
+    inside = np.array([0.0, 1.0, 1.0, 0.0])
+    terms = Process(400.0, 25.0, (0.5, 2.5)).terms(at)
+    assert terms.force == pytest.approx(-inside * (400.0 * at.s1 + 25.0))
 
 
 def test_the_contact_force_is_along_the_normal(press, base):

@@ -7,6 +7,7 @@
 # language governing permissions and limitations under the License.
 """The periodic motion of a cam drive, against time stepping, energy and plain integration."""
 
+from dataclasses import replace
 from math import acos, sqrt
 import re
 
@@ -222,3 +223,24 @@ def test_figures_that_make_no_drive_are_refused(press, name, value, rule):
         press(**{name: value})
     problem, = refused.value.problems
     assert (problem.path, problem.value is value, problem.rule) == (name, True, rule)
+
+
+@pytest.mark.parametrize('flywheel', [0.0, 0.06])
+def test_the_gearbox_passes_on_what_the_shaft_behind_it_takes(press, orbit_of, flywheel):
+    drive, orbit = press(flywheel), orbit_of(flywheel)
+    own = (drive.motor.inertia + flywheel) * drive.gearbox.ratio ** 2
+    taken = []
+    for stretch in orbit.stretches:
+        q = np.linspace(stretch.element.start, stretch.element.end, 401)
+        at, (omega, alpha) = drive.follower(stretch.element, q), stretch.motion(q)
+        terms = drive.terms(at)
+        taken.append(np.abs((terms.inertia - own) * alpha + terms.centripetal * omega ** 2
+                            - terms.force - terms.damping * omega))
+    assert orbit.peak_gearbox_torque == pytest.approx(np.max(taken), rel=1e-6)
+    assert orbit.peak_gearbox_torque >= np.max(taken) * (1.0 - 1e-12)
+
+
+def test_a_search_from_the_wrong_speed_still_finds_the_motion(press):
+    drive = press()
+    far = replace(drive, nominal_speed=0.4 * drive.nominal_speed)
+    assert find_orbit(far).speeds == pytest.approx(find_orbit(drive).speeds, rel=1e-10)
