@@ -43,7 +43,7 @@ def is_live(example):
     return 'import rclpy' in example.read_text(encoding='utf-8')
 
 
-def output_of(example):
+def output_of(example, folder):
     """Run an example from another folder and return what it prints."""
     path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get('PYTHONPATH')]))
     environment = os.environ | {
@@ -53,7 +53,7 @@ def output_of(example):
     if not is_live(example):
         environment['PYTHONWARNINGS'] = 'error'
     done = subprocess.run([sys.executable, str(example)], capture_output=True, encoding='utf-8',
-                          env=environment, cwd=ROOT.parent, timeout=50, check=False)
+                          env=environment, cwd=folder, timeout=50, check=False)
     assert done.returncode == 0, done.stderr
     if not is_live(example):
         assert done.stderr == ''  # nodes log there
@@ -76,10 +76,10 @@ def test_the_course_is_numbered_without_a_gap():
 @pytest.mark.parametrize('example', [
     pytest.param(path, marks=[pytest.mark.ros] if is_live(path) else []) for path in EXAMPLES
 ], ids=lambda path: path.stem)
-def test_an_example_prints_what_the_readme_shows_and_the_sources_say(example):
+def test_an_example_prints_what_the_readme_shows_and_the_sources_say(example, tmp_path):
     if is_live(example):
         pytest.importorskip('rclpy')
-    printed = output_of(example)
+    printed = output_of(example, tmp_path)
     assert printed.strip()
     place = -1
     for line in FIGURES.get(example.name, []):

@@ -24,6 +24,7 @@ from rich.text import Text
 REFRESH = 0.2
 """Time between two looks [s]."""
 
+_ORDINARY = 'in_sync'  # a state not worth a word on a plain line
 _LINE_EVERY = 1.0  # plain lines come slower [s]
 
 
@@ -126,18 +127,19 @@ def render(machine: Machine, seen: Snapshot, title: str, note: str = '') -> Grou
 
     """
     made = table(f'{title}  {note}'.rstrip(), [
-        ('', 'left'), ('now', 'right'), ('', 'left'), ('now', 'right'), ('', 'left')])
+        ('', 'left'), ('now', 'right'), ('', 'left'), ('now', 'right'), ('', 'left'),
+        ('', 'left')])
     if seen.time is None:
-        row(made, machine.master.name, 'waiting', '', '', '')
+        row(made, machine.master.name, 'waiting', '', '', '', '')
     else:
         row(made, machine.master.name, f'{seen.speed_cpm:.1f}', 'cycles/min',
-            f'{seen.angle_deg:.1f}', 'deg')
-        row(made, '', str(seen.cycles), 'cycles', f'{seen.time:.1f}', 's')
+            f'{seen.angle_deg:.1f}', 'deg', '')
+        row(made, '', str(seen.cycles), 'cycles', f'{seen.time:.1f}', 's', '')
     for name, motion in seen.axes.items():
         unit = machine.diagram.axes[name].unit
-        row(made, name, *_pair(motion, unit, rate_text(unit, 1), 4))
+        row(made, name, *_pair(motion, unit, rate_text(unit, 1), 4), seen.states.get(name, ''))
     for name, effort in seen.drives.items():
-        row(made, name, *_pair(effort, 'N m', 'rpm', 1))
+        row(made, name, *_pair(effort, 'N m', 'rpm', 1), '')
     return Group(made, Text(_health_text(seen)))
 
 
@@ -152,7 +154,10 @@ def _pair(values: tuple[float, float] | None, first: str, second: str, places: i
 
 def _health_text(seen: Snapshot) -> str:
     missed, late = seen.health.get('missed_ticks', '-'), seen.health.get('late_ticks', '-')
-    return f'ticks missed {missed}, late {late}'
+    text = f'ticks missed {missed}, late {late}'
+    if 'held_back_by' in seen.health:
+        text += f', held back by {seen.health["held_back_by"]}'
+    return text
 
 
 def plain_line(machine: Machine, seen: Snapshot) -> str:
@@ -178,7 +183,9 @@ def plain_line(machine: Machine, seen: Snapshot) -> str:
     ]
     for name, motion in seen.axes.items():
         unit = machine.diagram.axes[name].unit
-        parts.append(' '.join((name, *_pair(motion, unit, rate_text(unit, 1), 4))))
+        state = seen.states.get(name, _ORDINARY)
+        parts.append(' '.join((name, *_pair(motion, unit, rate_text(unit, 1), 4),
+                               *([state] if state != _ORDINARY else []))))
     parts += [' '.join((name, *_pair(effort, 'N m', 'rpm', 1)))
               for name, effort in seen.drives.items()]
     return '  '.join((*parts, _health_text(seen)))

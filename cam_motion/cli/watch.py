@@ -40,6 +40,8 @@ class Snapshot:
         Shaft angle, unwrapped [rad].
     axes : Mapping[str, tuple[float, float] | None]
         Position and velocity by axis [unit, unit/s].
+    states : Mapping[str, str]
+        State by axis; of those only that have told theirs.
     drives : Mapping[str, tuple[float, float] | None]
         Motor torque [N m] and motor speed [rpm] by drive.
     health : Mapping[str, str]
@@ -51,6 +53,7 @@ class Snapshot:
     speed_cpm: float = 0.0
     phi: float = 0.0
     axes: Mapping[str, tuple[float, float] | None] = field(default_factory=dict)
+    states: Mapping[str, str] = field(default_factory=dict)
     drives: Mapping[str, tuple[float, float] | None] = field(default_factory=dict)
     health: Mapping[str, str] = field(default_factory=dict)
 
@@ -113,6 +116,8 @@ class LineWatch:
             shaft.positions[0] if shaft else 0.0,
             {name: _motion(self._heard.get((kind, name)))
              for kind, name in self._subscriptions if kind == 'axis'},
+            {name: message.data for (kind, name), message in self._heard.items()
+             if kind == 'state'},
             {name: _effort(self._heard.get((kind, name)))
              for kind, name in self._subscriptions if kind == 'drive'},
             dict(self._health))
@@ -191,6 +196,7 @@ def _subscribe(node: Any, machine: Machine) -> dict[tuple[str, str], Any]:
         ('diagnostics', '', DiagnosticArray, '/diagnostics', several),
         *(('axis', name, JointTrajectoryPoint, f'{name}/setpoint', newest)
           for name in machine.diagram.axes),
+        *(('state', name, String, f'{name}/state', latched) for name in machine.diagram.axes),
         *(('drive', name, JointState, f'{name}/drive_state', newest)
           for name in machine.drive_names),
     ]

@@ -16,6 +16,8 @@ _GRACE = 0.3  # within this time [s] a master asked to stop along with us begins
 _DEFAULT_PERIOD = 0.002
 _KNOWN_AFTER = 5  # points in a row that fit each other make a shaft that is trusted
 _PER_GAP = 0.1  # share of the way by which a fluctuating shaft may miss it over lost ticks
+_STEEPEST = 5000.0  # acceleration that no shaft has [rad/s²]: its speed has stepped
+_STEP = 1e-6  # of the speed that is rounding [rad/s]
 _TOLERANCE = 1e-3  # by which an angle may miss what speed and time lead to [rad]
 
 
@@ -38,7 +40,9 @@ class ShaftWatch:
     last : Point | None
         The last point of the shaft.
     period : float
-        Time between its last two points [s].
+        Time from tick to tick [s].
+    missed : int
+        Ticks that did not come.
     refused, astray : int
         Points that did not go on from the shaft, ever and since its last one.
     reason : str
@@ -51,11 +55,13 @@ class ShaftWatch:
         self.timeout = timeout
         self.last: Point | None = None
         self.period = _DEFAULT_PERIOD
+        self.missed = 0
         self.refused = 0
         self.astray = 0
         self.reason = ''
         self._arrival = 0.0  # steady time of the last point [s]
         self._fitting = 0  # points in a row that have fitted, up to the number that makes known
+        self._unusual: float | None = None  # the last step that was not the period
         self._stop_from: float | None = None
         self._looked_at: Point | None = None  # the last point when it was asked for last
         self._silent_from = 0.0
@@ -79,30 +85,62 @@ class ShaftWatch:
         """
         last = self.last
         if last is not None:
-            step = point.sec - last.sec + 1e-9 * (point.nanosec - last.nanosec)
-            # the trapezoidal rule, with room for ticks that were lost while the speed changed
-            mean = 0.5 * (point.velocity + last.velocity)
-            miss = abs(point.position - last.position - mean * step)
-            room = _TOLERANCE + 0.5 * abs(point.velocity - last.velocity) * abs(step)
-            if step > 1.5 * self.period:
-                room += _PER_GAP * abs(mean * step)
-            stands = point.velocity == 0.0 == last.velocity
-            if miss <= room and (step >= 0.0 or stands):
-                # a time base that begins anew is no harm to a shaft that stands
-                self._fitting += self._fitting < _KNOWN_AFTER
-                self.period = step if step > 0.0 else self.period
-            elif self.known:
-                self.refused += 1
-                self.astray += 1
-                self.reason = (
-                    f'a shaft point {step:+.3g} s from the last one is at '
-                    f'{point.position / DEGREE:.6g} deg, not near '
-                    f'{(last.position + mean * step) / DEGREE:.6g} deg')
+            phi, omega, _, sec, nanosec = point
+            phi_0, omega_0, _, sec_0, nanosec_0 = last
+            step = sec - sec_0 + 1e-9 * (nanosec - nanosec_0)
+            # the trapezoidal rule
+            miss = phi - phi_0 - 0.5 * (omega + omega_0) * step
+            if step > 0.0 and -_TOLERANCE <= miss <= _TOLERANCE:
+                if not 0.5 * self.period < step < 1.5 * self.period:
+                    self._note_step(step)
+                if self._fitting < _KNOWN_AFTER:
+                    self._fitting += 1
+            elif not self._excused(point, last, step, miss):
                 return False
-            else:
-                self._fitting = 0
-        self.last, self._arrival, self.astray = point, now, 0
+        self.last = point
+        self._arrival = now
+        self.astray = 0
         return True
+
+    def _excused(self, point: Point, last: Point, step: float, miss: float) -> bool:
+        """Look closer at a point that does not fit the last one at first sight."""
+        way = 0.5 * (point.velocity + last.velocity) * step
+        # ticks may have been lost while the speed changed, or while it fluctuated
+        room = _TOLERANCE + 0.5 * abs((point.velocity - last.velocity) * step)
+        if step > 1.5 * self.period:
+            room += _PER_GAP * abs(way)
+        stands = point.velocity == 0.0 == last.velocity
+        steady = abs(point.velocity - last.velocity) <= _STEEPEST * step + _STEP
+        if abs(miss) <= room and (step >= 0.0 and steady or stands):
+            # a time base that begins anew is no harm to a shaft that stands
+            self._fitting = min(_KNOWN_AFTER, self._fitting + 1)
+            if step > 0.0:
+                self._note_step(step)
+            return True
+        if not self.known:
+            self._fitting = 0
+            return True
+        self.refused += 1
+        self.astray += 1
+        self.reason = (
+            f'a shaft point {step:+.3g} s from the last one is at '
+            f'{point.position / DEGREE:.6g} deg, not near '
+            f'{(last.position + way) / DEGREE:.6g} deg (is there a second master?)')
+        if abs(miss) <= room and step >= 0.0:
+            self.reason = (f'the speed of the shaft steps from {last.velocity:.6g} to '
+                           f'{point.velocity:.6g} rad/s')
+        return False
+
+    def _note_step(self, step: float) -> None:
+        """Tell lost ticks from another rate: a gap is followed by a step of the old length."""
+        if self._unusual is not None and abs(step - self._unusual) < 0.5 * self._unusual:
+            self.period, self._unusual = step, None
+            return
+        if step > 1.5 * self.period and self.known:
+            self.missed += round(step / self.period) - 1
+        elif not self.known:
+            self.period = step
+        self._unusual = step
 
     @property
     def known(self) -> bool:

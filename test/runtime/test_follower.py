@@ -412,3 +412,25 @@ def test_shaft_state_is_what_the_axis_saw():
     follower = make(engaged=False)
     follower.answer(*ShaftState(7.0, 3.0, 0.0))
     assert follower.engage().blend.start == 7.0
+
+
+def test_the_shaft_is_held_back_while_a_transition_needs_it():
+    """From standstill a short transition allows less than the cam: the axis says so meanwhile."""
+    short = Timing(span=20.0 * DEGREE, longest=20.0 * DEGREE)
+    follower = make(engaged=False, engage=short)
+    start = 100.0 * DEGREE
+    follower.answer(start, 0.0, 0.0)
+    plan = follower.engage()
+    free = follower.layout.speed_bound(follower.settings.limits).omega
+    assert plan.highest_speed < 0.9 * free
+    assert follower.speed_bound.omega == plan.highest_speed
+    shaft = Shaft(free, RAMP, RAMP, phi=start)
+    shaft.run(0.0)
+    t, before = 0.0, follower.answer(start, 0.0, 0.0)
+    while follower.state is not FollowerState.IN_SYNC:
+        obey(shaft, t, free, follower)
+        t += TICK
+        point = follower.answer(*shaft.state(t))
+        check_step(before, point, follower.settings.limits)
+        before = point
+    assert follower.speed_bound.omega == pytest.approx(free)
