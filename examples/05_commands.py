@@ -5,7 +5,7 @@
 # writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
-"""Commands to a live line, recorded: what every axis did, drawn with the states it went through."""
+"""Commands to a live line, recorded: what the axes did, drawn with their states."""
 
 from pathlib import Path
 import shutil

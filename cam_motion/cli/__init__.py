@@ -14,14 +14,14 @@ from collections.abc import Sequence
 import os
 import sys
 
-from cam_motion.cli import check, laws, line, plot, record, report, simulate, size
+from cam_motion.cli import change, check, laws, line, linkage, plot, record, report, simulate, size
 from cam_motion.cli.terminal import print_problems
 from cam_motion.errors import CamMotionError, ConfigurationError
 
 BAD_CONFIGURATION = 2
 """Exit code when what the user gave cannot be used."""
 
-_VERBS = (laws, check, plot, simulate, size, line, record, report)
+_VERBS = (laws, check, plot, simulate, size, linkage, line, change, record, report)
 
 
 def build_parser() -> argparse.ArgumentParser:

@@ -16,6 +16,7 @@ from cam_motion.cli.options import add_config, add_json, add_speed
 from cam_motion.cli.terminal import console, number, print_json, print_problems, row, speed, table
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.config import read_sections
+from cam_motion.io.linkage_data import range_text
 from cam_motion.io.summary import AxisSummary, bound_text, check_sections, CheckSummary
 from cam_motion.io.summary_data import check_as_data
 from cam_motion.motion.limits import QUANTITIES
@@ -88,6 +89,9 @@ def _print(check: CheckSummary, source: str) -> None:
         _print_margins(check)
     for name, each in check.interlocks.items():
         out.print(f'interlock {name}: kept, {each.verdict.text}')
+    for name, settings in check.linkages.items():
+        for variable in settings.linkage.inputs:
+            out.print(f'linkage {name}, {range_text(settings, variable)}')
     if check.problems:
         out.file.flush()
         print_problems(check.problems, source)

@@ -12,14 +12,23 @@ from __future__ import annotations
 import argparse
 from dataclasses import asdict
 import math
+from pathlib import Path
 from typing import Any
 
 from cam_motion.cli.options import add_json
-from cam_motion.cli.terminal import console, number, print_json, row, table
+from cam_motion.cli.terminal import (
+    console,
+    number,
+    print_files,
+    print_json,
+    row,
+    save_figure,
+    table,
+)
 from cam_motion.io.plain import finite, plain
 from cam_motion.motion.laws import Coefficients, LAWS, LawType, make_law
 
-_WIDE = 110  # columns needed for coefficients and prose side by side
+_WIDE = 150  # columns needed for coefficients and prose side by side, a law mostly on one line
 
 
 def add_to(verbs: Any) -> None:
@@ -34,6 +43,10 @@ def add_to(verbs: Any) -> None:
     """
     text = 'list the motion laws with their coefficients'
     parser = verbs.add_parser('laws', help=text, description=text.capitalize() + '.')
+    parser.add_argument('-o', '--output', metavar='DIR', type=Path,
+                        help='draw them on one sheet, laws.png in this directory')
+    parser.add_argument('--format', choices=('png', 'svg', 'pdf'), default='png',
+                        help='format of the sheet (default: png)')
     add_json(parser, 'the list')
     parser.set_defaults(run=run)
 
@@ -53,6 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         0.
 
     """
+    files = [_draw(arguments.output / f'laws.{arguments.format}')] if arguments.output else []
     if arguments.json:
         print_json([_as_data(law) for law in LAWS.values()])
         return 0
@@ -65,9 +79,10 @@ def run(arguments: argparse.Namespace) -> int:
             ('law', 'left'), ('Cv', 'right'), ('Ca', 'right'), ('Cj', 'right'),
             ('power', 'right'), ('RMS acc.', 'right'), *(prose if wide else []),
         ],
-        'Real peaks: velocity Cv h/T, acceleration Ca h/T², jerk Cj h/T³ for a lift h in a time '
-        "T.\nPower is max|s' s''|. Where the acceleration steps, the jerk is infinite; in brackets"
-        '\nthe largest between the steps. Laws with parameters are shown at their defaults.')
+        'Real peaks for a lift h in a time T: velocity Cv h/T, acceleration\n'
+        "Ca h/T², jerk Cj h/T³. Power is max|s' s''|. Where the acceleration\n"
+        'steps, the jerk is infinite; in brackets the largest between the steps.\n'
+        'Laws with parameters are shown at their defaults.')
     for law in LAWS.values():
         found = make_law(law.name).coefficients
         row(made, law.name, number(found.cv), number(found.ca), _jerk(found),
@@ -78,7 +93,16 @@ def run(arguments: argparse.Namespace) -> int:
         for law in LAWS.values():
             row(made, law.name, _what(law))
         out.print(made)
+    print_files(files)
     return 0
+
+
+def _draw(path: Path) -> Path:
+    from cam_motion.io.plots import laws_figure
+    # what only its conditions give a shape has none to show
+    shown = [make_law(law.name) for law in LAWS.values()
+             if law.name != 'dwell' and not law.any_ends]
+    return save_figure(laws_figure(shown), path)
 
 
 def _jerk(found: Coefficients) -> str:
@@ -92,10 +116,11 @@ def _what(law: LawType) -> str:
 
 
 def _as_data(law: LawType) -> dict[str, Any]:
-    coefficients = asdict(make_law(law.name).coefficients)
+    made = make_law(law.name)
     return {
         'name': law.name,
-        **{key: finite(value) for key, value in coefficients.items()},
+        **{key: finite(value) for key, value in asdict(made.coefficients).items()},
+        'ends': [end.value for end in made.ends],
         'summary': law.summary,
         'source': law.source,
         'parameters': [

@@ -51,8 +51,9 @@ def print_report(report: Report) -> None:
         out.print(f'FINDING: {finding}', style='bold red')
     if not found:
         holds = _some_holds(report)
-        out.print(f"every setpoint is within {TOLERANCE_TEXT} of its axis' own peak, and every "
-                  f'shaft tick is answered{holds}', style='bold')
+        which = 'compared ' if any(axis.elsewhere for axis in report.axes.values()) else ''
+        out.print(f"every setpoint {which}is within {TOLERANCE_TEXT} of its axis' own peak, and "
+                  f'every shaft tick is answered{holds}', style='bold')
 
 
 def _some_holds(report: Report) -> str:

@@ -17,6 +17,7 @@ from typing import Any
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import axis_parameters
 from cam_motion.io.parameters import check_values, ParameterSpec
+from cam_motion.io.tracks import take_tracks, track_table, TrackSettings
 from cam_motion.motion.diagram import Axis
 from cam_motion.motion.laws import make_law
 from cam_motion.motion.limits import Limits, QUANTITIES, SpeedBound
@@ -54,12 +55,15 @@ class CoupledAxis(Axis):
         What it may, and how it engages, disengages, changes and resumes.
     values : Mapping[str, Any]
         Every parameter of the axis itself, checked.
+    tracks : Mapping[str, TrackSettings]
+        Its cam tracks by name.
 
     """
 
     layout: Layout = field(kw_only=True)
     settings: FollowerSettings = field(kw_only=True)
     values: Values = field(kw_only=True)
+    tracks: Mapping[str, TrackSettings] = field(kw_only=True, default_factory=dict)
 
     def bound_by(self, limits: Limits) -> SpeedBound | None:
         """
@@ -94,12 +98,12 @@ def axis_table(given: Values) -> tuple[ParameterSpec, ...]:
         The table; of several cams each has its own part, below its name.
 
     """
-    cams = names_in(given, 'cams')
+    cams, tracks = names_in(given, 'cams'), track_table(given, of_axis=True)
     if not cams:
-        return axis_parameters.CAM_AXIS
+        return axis_parameters.CAM_AXIS + tracks
     own = tuple(spec for spec in axis_parameters.CAM_AXIS if spec not in axis_parameters.CAM)
-    return own + tuple(replace(spec, name=f'{cam}.{spec.name}')
-                       for cam in dict.fromkeys(cams) for spec in axis_parameters.CAM)
+    return own + tracks + tuple(replace(spec, name=f'{cam}.{spec.name}')
+                                for cam in dict.fromkeys(cams) for spec in axis_parameters.CAM)
 
 
 def names_in(given: Values, key: str) -> list[str]:
@@ -175,7 +179,9 @@ def build_axis(name: str, given: Values) -> CoupledAxis:
 
     """
     names = names_in(given, 'cams')
-    problems = _twice('cams', names)
+    given, tracks, problems = take_tracks(
+        given, axis_parameters.CAM_AXIS, [*names, *names_in(given, 'segments')], of_axis=True)
+    problems += _twice('cams', names)
     profiles: dict[str, CamProfile] = {}
     couplings: dict[str, Coupling] = {}
     if names:
@@ -213,7 +219,7 @@ def build_axis(name: str, given: Values) -> CoupledAxis:
     if problems:
         raise ConfigurationError(problems)
     return CoupledAxis(name, profiles[active[0]], values['unit'], limits, layout=layout,
-                       settings=_settings(values, limits), values=values)
+                       settings=_settings(values, limits), values=values, tracks=tracks)
 
 
 def _twice(key: str, names: Iterable[str]) -> list[Problem]:

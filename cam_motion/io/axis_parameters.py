@@ -9,7 +9,8 @@
 
 from __future__ import annotations
 
-from cam_motion.io.parameters import AUTOSTART, ParameterSpec, REQUIRED
+from cam_motion.io.parameters import AUTOSTART, ParameterSpec, REQUIRED, TRACKS
+from cam_motion.io.track_parameters import TRAJECTORY
 
 CAM = (
     ParameterSpec('cycle', 'string', 'return',
@@ -93,7 +94,7 @@ CAM_AXIS = (
     ParameterSpec('dead_time', 'double', 0.0,
                   'By how much the axis runs ahead of the shaft, to make up for what its drive '
                   'lags behind.', 's', least=-1.0, most=1.0),
-    ParameterSpec('master_timeout', 'double', 0.2,
+    ParameterSpec('master_timeout', 'double', 0.5,
                   'After this long without a shaft point the axis stops on its curve.', 's',
                   above=0.0, most=60.0),
     ParameterSpec('stop_acceleration', 'double', 150.0,
@@ -101,6 +102,8 @@ CAM_AXIS = (
                   'must stop while the shaft goes on, or the shaft has fallen silent; the same '
                   'for all axes that are to stop together.', 'rad/s²', above=0.0),
     ParameterSpec('stop_jerk', 'double', 3000.0, 'Jerk of that stop.', 'rad/s³', above=0.0),
+    TRACKS,
+    *TRAJECTORY,
     AUTOSTART,
 )
 

@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from cam_motion.drive.cam_drive import CamDrive
@@ -29,6 +29,7 @@ from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import CoupledAxis, split_below
 from cam_motion.io.cam_drive_parameters import CAM_DRIVE, KIND, part_names, PARTS
 from cam_motion.io.parameters import check_values
+from cam_motion.io.tracks import take_tracks, TrackSettings
 from cam_motion.motion.profile import CamProfile
 from cam_motion.runtime.layout import Coupling
 from cam_motion.units import DEGREE, RPM
@@ -55,6 +56,8 @@ class CamDriveSettings:
         Torque of the brake on the motor shaft [N m].
     values : Mapping[str, Any]
         Every parameter of the table, checked.
+    tracks : Mapping[str, TrackSettings]
+        The cam tracks of its shaft by name.
 
     """
 
@@ -66,6 +69,7 @@ class CamDriveSettings:
     roller_radius: float
     brake_torque: float
     values: Mapping[str, Any]
+    tracks: Mapping[str, TrackSettings] = field(default_factory=dict)
 
     @property
     def base(self) -> float:
@@ -99,8 +103,10 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
 
     """
     names = part_names(given)
+    given, tracks, problems = take_tracks(given, CAM_DRIVE, names)
     own, below = split_below(given, names)
-    values, problems = check_values(CAM_DRIVE, own)
+    values, wrong = check_values(CAM_DRIVE, own)
+    problems += wrong
     taken = {spec.name.partition('.')[0] for spec in CAM_DRIVE}
     problems += [
         Problem('load', part, 'every part has a name of its own, which is no parameter')
@@ -133,7 +139,7 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
         CamDrive(profile, parts, motor, gearbox, values['flywheel'], nominal),
         gearbox.ratio * nominal if rated is None else rated * RPM,
         values['base_radius'], values['roller_radius'],
-        motor.breakdown_torque if brake is None else brake, values)
+        motor.breakdown_torque if brake is None else brake, values, tracks)
 
 
 def cam_on_shaft(axis: CoupledAxis) -> CamProfile:

@@ -15,6 +15,7 @@ from typing import Any
 
 from cam_motion.drive.load import GRAVITY
 from cam_motion.io.parameters import AUTOSTART, DRIVE_SIM, ParameterSpec, REQUIRED, SHAFT_TICKS
+from cam_motion.io.tracks import track_table
 
 
 def _number(name: str, meaning: str, unit: str, default: Any = REQUIRED,
@@ -98,10 +99,10 @@ def cam_drive_table(given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
     Returns
     -------
     tuple[ParameterSpec, ...]
-        `CAM_DRIVE`, and below the name of each part what its type has.
+        `CAM_DRIVE`, and below the names of tracks and parts what these have.
 
     """
-    return (*CAM_DRIVE, *(
+    return (*CAM_DRIVE, *track_table(given, of_axis=False), *(
         replace(spec, name=f'{part}.{spec.name}') for part in part_names(given)
         for spec in PARTS.get(str(given.get(f'{part}.type')), (KIND,))))
 

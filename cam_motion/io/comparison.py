@@ -9,12 +9,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from cam_motion.io.axis import CoupledAxis
+from cam_motion.io.axis_limits import CascadedAxis
+from cam_motion.io.axis_states import durations, spells_of, within
 from cam_motion.io.recording import Track
 from cam_motion.motion.diagram import Axis
 from cam_motion.motion.piece import Array
+from cam_motion.runtime.demand import Demand
+from cam_motion.runtime.motion_over_angle import CoupledCam, Motion
+from cam_motion.units import TURN
 import numpy as np
 from numpy.typing import NDArray
 
@@ -77,6 +84,8 @@ class AxisReport:
         Largest magnitudes of recorded velocity and acceleration [unit/s, unit/s²].
     comparison : Comparison
         The setpoints beside the exact curve.
+    elsewhere : Mapping[str, float]
+        How long the axis was not on its curve [s], by what it did instead; not compared.
 
     """
 
@@ -90,6 +99,7 @@ class AxisReport:
     unheard: int
     peaks: tuple[float, float]
     comparison: Comparison
+    elsewhere: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def deviations(self) -> tuple[float, float, float]:
@@ -117,7 +127,8 @@ def repeats_of(track: Track) -> NDArray[np.bool_]:
     return np.concatenate([[False], same]) if len(track) else np.zeros(0, dtype=bool)
 
 
-def compare_axis(axis: Axis, shaft: Track, setpoints: Track) -> AxisReport:
+def compare_axis(axis: Axis, shaft: Track, setpoints: Track,
+                 states: Sequence[tuple[int, str]] = ()) -> AxisReport:
     """
     Pair setpoints with the shaft points they answer, and compare them with the exact curve.
 
@@ -129,6 +140,9 @@ def compare_axis(axis: Axis, shaft: Track, setpoints: Track) -> AxisReport:
         Shaft points, each tick once.
     setpoints : Track
         Setpoints of the axis.
+    states : Sequence[tuple[int, str]]
+        (Time of reception [ns], state) as the axis told them: what it did while it was not on
+        its curve is not compared.
 
     Returns
     -------
@@ -144,17 +158,42 @@ def compare_axis(axis: Axis, shaft: Track, setpoints: Track) -> AxisReport:
     answered = np.zeros(len(shaft), dtype=bool)
     answered[place[paired]] = True
     unheard = _unheard(shaft, answered)
-    chosen, at = answers.chosen(paired), place[paired]
-    left_out = ~answered & ~unheard
-    comparison = _compare(axis, shaft.position[at], shaft.velocity[at], shaft.acceleration[at],
-                          (chosen.position, chosen.velocity, chosen.acceleration))
+    spells = spells_of(states, isinstance(axis, CoupledAxis) and (
+        axis.settings.master_relative or axis.settings.slave_relative))
+    off = within(spells, answers.stamps_ns)
+    compared = paired & ~off
+    chosen, at = answers.chosen(compared), place[compared]
+    left_out = ~answered & ~unheard & ~within(spells, shaft.stamps_ns)
+    recorded, seen = (chosen.position, chosen.velocity, chosen.acceleration), _seen(
+        axis, shaft, at)
+    if spells and axis.profile.advance:
+        # whole strokes are all the same to a belt that has been stopped and engaged anew
+        later = chosen.stamps_ns > spells[0].begin_ns
+        recorded = (chosen.position - later * _strokes(axis, seen[0], chosen.position),
+                    *recorded[1:])
+    comparison = _compare(axis, *seen, recorded)
     return AxisReport(
         axis, int(paired.sum()), int(holds.sum()), int((repeats & ~holds).sum()),
-        int((~paired).sum()), int(left_out.sum()),
+        int((~paired & ~off).sum()), int(left_out.sum()),
         float(shaft.time_ns[left_out][0]) * 1e-9 if left_out.any() else None, int(unheard.sum()),
         (float(np.max(np.abs(setpoints.velocity), initial=0.0)),
          float(np.max(np.abs(setpoints.acceleration), initial=0.0))),
-        comparison)
+        comparison, durations(spells, int(setpoints.stamps_ns[-1]) if len(setpoints) else 0))
+
+
+def _seen(axis: Axis, shaft: Track, at: NDArray[np.int64]) -> tuple[Array, Array, Array]:
+    """Give angle, speed and acceleration as the axis saw them, ahead by its dead time."""
+    phi, omega, alpha = shaft.position[at], shaft.velocity[at], shaft.acceleration[at]
+    lead = axis.values['dead_time'] if isinstance(axis, CoupledAxis) else 0.0
+    return phi + lead * (omega + 0.5 * lead * alpha), omega + lead * alpha, alpha
+
+
+def _strokes(axis: Axis, phi: Array, position: Array) -> Array:
+    """Find the whole strokes by which a belt lies ahead of its curve."""
+    stroke = axis.profile.advance
+    if isinstance(axis, CoupledAxis):
+        stroke = axis.layout.advance * axis.layout.period / TURN
+    return np.asarray(stroke * np.rint((position - _motion(axis)(phi)[0]) / stroke))
 
 
 def _pair(shaft: Track, answers: Track) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
@@ -183,15 +222,29 @@ def _unheard(shaft: Track, answered: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _compare(axis: Axis, phi: Array, omega: Array, alpha: Array,
              recorded: tuple[Array, Array, Array]) -> Comparison:
-    profile = axis.profile
-    slope, bend = profile(phi, 1), profile(phi, 2)
-    exact = (profile(phi), slope * omega, bend * omega * omega + slope * alpha)
     top = float(np.max(np.abs(omega), initial=0.0))
-    peaks = (abs(profile.curve.peak(0).value), abs(profile.curve.peak(1).value) * top,
-             abs(profile.curve.peak(2).value) * top * top)
+    y, slope, bend, *_ = _motion(axis)(phi)
+    exact = (y, slope * omega, bend * omega * omega + slope * alpha)
+    peaks = [peak * top ** order for order, peak in enumerate(_peaks(axis))]
     return Comparison(phi, omega, alpha, recorded, exact, (
         _share(recorded[0] - exact[0], peaks[0]), _share(recorded[1] - exact[1], peaks[1]),
         _share(recorded[2] - exact[2], peaks[2])))
+
+
+def _motion(axis: Axis) -> Motion:
+    if isinstance(axis, CascadedAxis):
+        return axis.motion
+    return axis.layout.motion if isinstance(axis, CoupledAxis) else CoupledCam(axis.profile)
+
+
+def _peaks(axis: Axis) -> list[float]:
+    """Find the largest magnitudes of position and two derivatives in one cycle."""
+    motion = _motion(axis)
+    if motion == CoupledCam(axis.profile):
+        return [abs(axis.profile.curve.peak(order).value) for order in range(3)]
+    period = axis.period if isinstance(axis, CascadedAxis) else (
+        axis.layout.period if isinstance(axis, CoupledAxis) else TURN)
+    return [float(np.max(np.abs(row))) for row in Demand(motion, 0.0, period).values[:3]]
 
 
 def _share(difference: Array, peak: float) -> Array:

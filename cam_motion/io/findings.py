@@ -57,6 +57,8 @@ def _axis_findings(axis: AxisReport) -> Iterator[str]:
     if axis.unanswered:
         yield (f'{_some(axis.unanswered, "shaft tick")} without a setpoint, the first at '
                f'{axis.unanswered_at:.6g} s')
+    if 'fault' in axis.elsewhere:
+        yield 'it went into fault'
     if axis.unpaired:
         yield f'{_some(axis.unpaired, "setpoint")} for which the bag has no shaft point'
     if axis.repeated:
@@ -96,6 +98,10 @@ def notes(report: Report) -> list[str]:
         if axis.unheard:
             found.append(f'{name}: {_some(axis.unheard, "shaft tick")} before the recorder heard '
                          'the axis, or after it had left')
+        if axis.elsewhere:
+            times = ', '.join(f'{lasted:.3g} s {what.replace("_", " ")}'
+                              for what, lasted in axis.elsewhere.items())
+            found.append(f'{name}: not compared with the machine file for {times}')
         for order, peak in enumerate(axis.peaks, start=1):
             limit = axis.axis.limits.of_order(order)
             if limit is not None and peak > limit * (1.0 + TOLERANCE):

@@ -17,7 +17,7 @@ from typing import Any
 from cam_motion.errors import CamMotionError, ConfigurationError, Problem
 from cam_motion.io.axis import axis_table, build_axis, CoupledAxis, Values
 from cam_motion.io.axis_limits import CascadedAxis, SHAFT
-from cam_motion.io.format_parameters import FIXED
+from cam_motion.io.format_parameters import is_of_a_format
 from cam_motion.io.machine import Machine
 from cam_motion.io.parameters import is_of_every_node, REQUIRED
 from cam_motion.runtime.demand import Demand
@@ -30,7 +30,7 @@ from cam_motion.units import DEGREE, RPM, TURN
 
 _TRIES = 24  # shaft angles within a turn at which a change is tried
 _STEADY = RampLimits(0.0, 0.0)
-_AHEAD = 1.0  # from now to the beginning of the change at least [s]
+_AHEAD = 2.0  # from now to the beginning of the change at least [s]
 
 
 class FormatError(CamMotionError):
@@ -100,7 +100,7 @@ class FormatPlan:
         Returns
         -------
         float
-            The next passage of the planned angle that is a second and a transition ahead,
+            The next passage of the planned angle that is two seconds and a transition ahead,
             unwrapped [rad].
 
         """
@@ -126,7 +126,8 @@ def check_fixed(before: CoupledAxis, after: CoupledAxis) -> None:
     problems = [
         Problem(key, after.values[key], f'is no part of a format: it is {before.values[key]!r} '
                 'until the axis is started anew')
-        for key in FIXED if after.values[key] != before.values[key]]
+        for key in after.values
+        if not is_of_a_format(key) and after.values[key] != before.values.get(key)]
     if before.values['follows'] != SHAFT:
         problems.append(Problem(
             'follows', before.values['follows'], 'only an axis that follows the shaft itself '

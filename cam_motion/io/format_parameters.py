@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+from cam_motion.io.axis_parameters import CAM, TRANSITIONS
 from cam_motion.io.parameters import ParameterSpec, REQUIRED
 
 
@@ -49,6 +50,24 @@ STAGED = (
 )
 """What an axis has beside its own parameters, and only while it runs."""
 
-FIXED = ('unit', 'follows', 'dead_time', 'master_timeout', 'stop_acceleration', 'stop_jerk',
-         'autostart')
-"""Parameters of an axis that are no part of a format: they stay what they were at the start."""
+_OF_A_FORMAT = (
+    *(spec.name for spec in CAM), 'cams', 'active', 'limits', 'shaft_acceleration', 'shaft_jerk',
+    'engage_at_start', 'start_position', *TRANSITIONS)
+
+
+def is_of_a_format(name: str) -> bool:
+    """
+    Tell the parameters of an axis that belong to a format from those of the machine.
+
+    Parameters
+    ----------
+    name : str
+        Name of a parameter of an axis.
+
+    Returns
+    -------
+    bool
+        Whether a change of format may change it; else it stays what it was at the start.
+
+    """
+    return name.partition('.')[0] in _OF_A_FORMAT

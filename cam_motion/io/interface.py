@@ -29,6 +29,9 @@ class Endpoint(NamedTuple):
 _POINT = 'trajectory_msgs/msg/JointTrajectoryPoint'
 _JOINTS = 'sensor_msgs/msg/JointState'
 
+_TRACK = 'std_msgs/msg/Bool'
+_OF_TRACK = 'latched, at every change: whether the cam track of that name is on'
+
 INTERFACE = (
     Endpoint('master_shaft', 'publishes', 'shaft', _POINT,
              'every tick: [φ], [ω], [α]; time_from_start is the scheduled time of the tick'),
@@ -45,6 +48,7 @@ INTERFACE = (
              'acknowledge a quick stop'),
     Endpoint('master_shaft', 'subscribes', '<axis>/max_speed_cpm', 'std_msgs/msg/Float64',
              'what each axis allows: the shaft obeys the lowest'),
+    Endpoint('master_shaft', 'publishes', '~/<track>', _TRACK, _OF_TRACK),
     Endpoint('cam_axis', 'subscribes', 'shaft', _POINT,
              'the shaft that the axis follows, or <axis>/setpoint'),
     Endpoint('cam_axis', 'publishes', '~/setpoint', _POINT,
@@ -60,6 +64,10 @@ INTERFACE = (
              'true: onto the curve; false: to standstill; answers with the plan and its peaks'),
     Endpoint('cam_axis', 'serves', '~/reset', 'std_srvs/srv/Trigger',
              'acknowledge a stop and come back onto the curve; answers with the plan'),
+    Endpoint('cam_axis', 'publishes', '~/<track>', _TRACK, _OF_TRACK),
+    Endpoint('cam_axis', 'publishes', '~/trajectory', 'trajectory_msgs/msg/JointTrajectory',
+             'with trajectory.rate_hz: the setpoints of the next moments, for '
+             'joint_trajectory_controller'),
     Endpoint('drive_sim', 'subscribes', '<axis>/setpoint', _POINT,
              'the axis that it moves; not with mode line_shaft'),
     Endpoint('drive_sim', 'publishes', '~/drive_state', _JOINTS,
@@ -71,6 +79,7 @@ INTERFACE = (
     Endpoint('drive_sim: line_shaft', 'publishes', 'shaft', _POINT,
              'every tick, in the place of a master shaft'),
     Endpoint('drive_sim: line_shaft', 'publishes', 'joint_states', _JOINTS, 'φ and ω for viewers'),
+    Endpoint('drive_sim: line_shaft', 'publishes', '~/<track>', _TRACK, _OF_TRACK),
     Endpoint('drive_sim: line_shaft', 'serves', '~/run', 'std_srvs/srv/SetBool',
              'true: release the brake, switch the motor on; false: switch it off, and coast'),
     Endpoint('drive_sim: line_shaft', 'serves', '~/quick_stop', 'std_srvs/srv/Trigger',

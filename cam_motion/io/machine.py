@@ -25,6 +25,7 @@ from cam_motion.io.interlocks import build_interlocks, judge, JudgedInterlock, l
 from cam_motion.io.parameters import check_values
 from cam_motion.io.servo_config import build_motor, build_servo, SERVO, ServoSettings
 from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO_DRIVE
+from cam_motion.io.tracks import take_tracks, TrackSettings
 from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
@@ -43,13 +44,14 @@ class MasterSettings:
     ----------
     name : str
         Name of its node.
-    values : Mapping[str, Any]
-        Every parameter of the table, checked.
+    values, tracks : Mapping[str, Any]
+        Every parameter of the table, checked, and the cam tracks by name.
 
     """
 
     name: str
     values: Values
+    tracks: Mapping[str, TrackSettings] = field(default_factory=dict)
 
     @property
     def speed(self) -> float:
@@ -196,10 +198,11 @@ def build_master(name: str, given: Values) -> MasterSettings:
         With every problem, paths relative to the node.
 
     """
-    values, problems = check_values(parameters.MASTER_SHAFT, given)
-    if problems:
-        raise ConfigurationError(problems)
-    return MasterSettings(name, values)
+    rest, tracks, problems = take_tracks(given, parameters.MASTER_SHAFT)
+    values, wrong = check_values(parameters.MASTER_SHAFT, rest)
+    if problems or wrong:
+        raise ConfigurationError(problems + wrong)
+    return MasterSettings(name, values, tracks)
 
 
 def build_drive(name: str, given: Values) -> DriveSettings:

@@ -151,6 +151,11 @@ class ParameterSpec:
 AUTOSTART = ParameterSpec(
     'autostart', 'bool', True, 'Whether the node configures and activates itself.')
 
+TRACKS = ParameterSpec(
+    'tracks', 'string_list', [],
+    'Names of cam tracks, outputs that are on over a part of the cycle; each has a section below '
+    'its name, and a topic ~/<name>.')
+
 SHAFT_TICKS = (
     ParameterSpec('rate_hz', 'double', 500.0, 'Shaft points published per second.', 'Hz',
                   least=1.0, most=5000.0),
@@ -164,6 +169,7 @@ SHAFT_TICKS = (
     ParameterSpec('joint_states_hz', 'double', 50.0,
                   'Rate of joint_states for viewers; 0 switches it off.', 'Hz',
                   least=0.0, most=1000.0),
+    TRACKS,
 )
 """What every node has that turns the shaft."""
 

@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -31,6 +31,7 @@ MACHINE_KEY = 'machine'
 """Under this key a bag carries the text of the machine file."""
 
 _POINT = 'trajectory_msgs/msg/JointTrajectoryPoint'
+_TEXT = 'std_msgs/msg/String'
 _DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
 
 
@@ -51,6 +52,8 @@ class Track:
         Time on the machine's time base [ns].
     position, velocity, acceleration : ndarray, shape (n,)
         Values [unit, unit/s, unit/s²]; of the shaft phi, omega, alpha [rad, rad/s, rad/s²].
+    stamps_ns : ndarray of int64, shape (n,)
+        Time of reception [ns].
 
     """
 
@@ -59,6 +62,7 @@ class Track:
     position: Array
     velocity: Array
     acceleration: Array
+    stamps_ns: NDArray[np.int64]
 
     def __len__(self) -> int:
         """Count the points."""
@@ -80,7 +84,7 @@ class Track:
 
         """
         return Track(self.run[which], self.time_ns[which], self.position[which],
-                     self.velocity[which], self.acceleration[which])
+                     self.velocity[which], self.acceleration[which], self.stamps_ns[which])
 
 
 @dataclass(frozen=True)
@@ -110,6 +114,8 @@ class Recording:
         Last diagnostic figures of the master shaft, as text by key.
     actual : Mapping[str, Track]
         What the axes really did, by servo drive.
+    states : Mapping[str, Sequence[tuple[int, str]]]
+        (Time of reception [ns], state) as each axis told them.
 
     """
 
@@ -123,6 +129,7 @@ class Recording:
     files: Mapping[str, int]
     master_health: Mapping[str, str]
     actual: Mapping[str, Track] = field(default_factory=dict)
+    states: Mapping[str, Sequence[tuple[int, str]]] = field(default_factory=dict)
 
 
 def read_recording(path: Path, config: Path | None = None) -> Recording:
@@ -172,7 +179,10 @@ def read_recording(path: Path, config: Path | None = None) -> Recording:
             {name: info.count for name, info in sorted(reader.topics.items())},
             _files(path), _master_health(reader, machine.master.name),
             {name: _track(read_points(reader, found)) for name in machine.drives
-             if (found := topic(f'{name}/actual'))})
+             if (found := topic(f'{name}/actual'))},
+            {axis: [(stamp, str(reader.decode(_TEXT, raw).data))
+                    for _, stamp, raw in reader.messages(found)]
+             for axis in machine.diagram.axes if (found := topic(f'{axis}/state'))})
 
 
 def _machine(reader: BagReader, config: Path | None) -> Machine:
@@ -206,9 +216,10 @@ def _track(series: PointSeries) -> Track:
     time_ns = np.rint(series.time_from_start_s * 1e9).astype(np.int64)
     run = np.concatenate([[0], np.cumsum(np.diff(time_ns) < 0)]) if len(time_ns) else time_ns
     columns = (series.positions, series.velocities, series.accelerations)
-    first = [values[:, 0] if values.shape[1] else np.full(len(values), np.nan)
-             for values in columns]
-    return Track(run.astype(np.int64), time_ns, *first)
+    position, velocity, acceleration = (
+        values[:, 0] if values.shape[1] else np.full(len(values), np.nan) for values in columns)
+    return Track(run.astype(np.int64), time_ns, position, velocity, acceleration,
+                 series.stamps_ns)
 
 
 def _files(path: Path) -> dict[str, int]:

@@ -32,6 +32,7 @@ from cam_motion.io.parameters import (
     REQUIRED,
 )
 from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO_DRIVE
+from cam_motion.io.track_parameters import AXIS_TRACK
 
 _BLOCK = re.compile(r'(<!-- generated: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL)
 
@@ -77,6 +78,7 @@ def parameter_tables() -> str:
         spec for spec in table if spec.name != 'type'] for kind, table in PARTS.items()}
     titled = {
         **{_title(name): table for name, table in TABLES.items()},
+        'below each track of a shaft or an axis': AXIS_TRACK,
         'below each interlock of a `line`': INTERLOCK,
         '`cam_axis` while it runs, for a change of format': STAGED,
         '`drive_sim`': FOLLOW_DRIVE,

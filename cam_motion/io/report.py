@@ -135,7 +135,8 @@ def make_report(recording: Recording) -> Report:
         sum(float(run.time_ns[-1] - run.time_ns[0]) * 1e-9 for run in per_run),
         sum(abs(float(run.position[-1] - run.position[0])) / TURN for run in per_run),
         float(np.max(np.abs(shaft.velocity))),
-        {name: compare_axis(recording.machine.diagram.axes[name], shaft, setpoints)
+        {name: compare_axis(recording.machine.diagram.axes[name], shaft, setpoints,
+                            recording.states.get(name, ()))
          for name, setpoints in recording.setpoints.items() if setpoints is not None},
         {name: replace(drive_report(states), following_error=_following_error(recording, name))
          for name, states in recording.drives.items()})

@@ -65,6 +65,7 @@ def _axis(axis: AxisReport) -> dict[str, Any]:
         'setpoints': axis.setpoints, 'holds': axis.holds, 'repeated': axis.repeated,
         'unpaired': axis.unpaired, 'unanswered': axis.unanswered, 'unheard': axis.unheard,
         'deviation': {name: finite(worst) for name, worst in zip(QUANTITIES, axis.deviations)},
+        **({'elsewhere_s': dict(axis.elsewhere)} if axis.elsewhere else {}),
         'peak_velocity': finite(axis.peaks[0]),
         'peak_acceleration': finite(axis.peaks[1]),
         'limits': {name: axis.axis.limits.of_order(order)

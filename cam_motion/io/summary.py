@@ -19,6 +19,7 @@ from cam_motion.io import parameters
 from cam_motion.io.axis import build_axis, Values
 from cam_motion.io.cam_drive_parameters import CAM_DRIVE
 from cam_motion.io.interlocks import JudgedInterlock, line_values
+from cam_motion.io.linkage_config import build_linkages, linkage_names, LinkageSettings
 from cam_motion.io.machine import build_machine, guess_line, Machine, shaft_drives
 from cam_motion.io.parameters import check_values
 from cam_motion.motion.diagram import Axis, TimingDiagram
@@ -95,6 +96,8 @@ class CheckSummary:
         What the drives with a given motor leave of its limits, where the machine is sound.
     interlocks : Mapping[str, JudgedInterlock]
         By how much the interlocks are kept, likewise.
+    linkages : Mapping[str, LinkageSettings]
+        The linkages that are sound.
 
     """
 
@@ -103,6 +106,7 @@ class CheckSummary:
     axes: Mapping[str, AxisSummary]
     margins: Mapping[str, LimitFigures] = field(default_factory=dict)
     interlocks: Mapping[str, JudgedInterlock] = field(default_factory=dict)
+    linkages: Mapping[str, LinkageSettings] = field(default_factory=dict)
 
     @property
     def line_bound(self) -> tuple[str, SpeedBound] | None:
@@ -127,6 +131,9 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
         All problems, and the figures of every axis that is sound in itself.
 
     """
+    linkages, wrong = build_linkages(sections)
+    if linkage_names(sections) == list(sections):  # a file of linkages only has no line
+        return CheckSummary(tuple(wrong), None, {}, linkages=linkages)
     line, turning = _line(sections), turning_drive(sections)
     if speed_cpm is not None and not turning:
         sections = with_speed(sections, speed_cpm)
@@ -147,7 +154,7 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
                 build_axis(name, sections.get(name, {})), speed_cpm * RPM)
         except ConfigurationError:
             continue  # its problems are among those above
-    return CheckSummary(problems, speed_cpm, axes, margins, interlocks)
+    return CheckSummary((*problems, *wrong), speed_cpm, axes, margins, interlocks, linkages)
 
 
 def _margins(machine: Machine) -> dict[str, LimitFigures]:

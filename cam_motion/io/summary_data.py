@@ -14,6 +14,7 @@ from typing import Any
 from cam_motion.drive.servo_cycle import LimitFigures
 from cam_motion.errors import Problem
 from cam_motion.io.interlocks import JudgedInterlock
+from cam_motion.io.linkage_data import range_as_data
 from cam_motion.io.plain import finite, plain
 from cam_motion.io.summary import AxisSummary, bound_text, CheckSummary, SegmentSummary
 from cam_motion.motion.limits import QUANTITIES
@@ -47,6 +48,9 @@ def check_as_data(check: CheckSummary) -> dict[str, Any]:
         'axes': {name: _axis_as_data(axis) for name, axis in check.axes.items()},
         'drives': {name: margins_as_data(margins) for name, margins in check.margins.items()},
         'interlocks': {name: judged_as_data(each) for name, each in check.interlocks.items()},
+        'linkages': {name: {each: range_as_data(settings, each)
+                            for each in settings.linkage.inputs}
+                     for name, settings in check.linkages.items()},
     }
 
 

@@ -33,6 +33,7 @@ _CHEBYSHEV_TRANSFORM[0] *= 0.5
 # harmless, because the zeros serve as candidates at which a curve is then evaluated.
 _IMAGINARY_SLACK = 1e-4
 _NEWTON_STEPS = 3
+_VANISHES = 1e-12  # values below this share of the largest in their stretch are zero
 # Gauss-Legendre rule: exact for the square of any polynomial up to degree 31, and to rounding
 # for the square of a sinusoid over at most half a wave.
 _GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(32)
@@ -270,4 +271,7 @@ def find_zeros(
             step = np.where(np.abs(step) < 1e-3 * half, step, 0.0)
             points = np.clip(points - step, low, high)
         found += [float(point) for point in points]
+        # a zero of high multiplicity on an end spreads over both sides and out of both stretches
+        if abs(function(np.array([high]))[0]) <= _VANISHES * largest:
+            found.append(float(high))
     return found

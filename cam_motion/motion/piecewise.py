@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import accumulate
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cam_motion.errors import DomainError
 from cam_motion.motion.compiled import compile_sampler, Sampler
@@ -78,6 +78,10 @@ class Piecewise:
     def end(self) -> float:
         """Abscissa at which the curve ends."""
         return self.breaks[-1]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the compiled function out: it is made anew where it is needed."""
+        return {key: value for key, value in self.__dict__.items() if key != 'sample'}
 
     @cached_property
     def sample(self) -> Sampler:

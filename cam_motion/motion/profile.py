@@ -12,10 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cached_property
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.compiled import compile_periodic_sampler, Sampler
+from cam_motion.motion.laws import laws_between
+from cam_motion.motion.matching import matched
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import JOINT_TOLERANCE, Jump, Peak, Piecewise
 from cam_motion.motion.segment import Segment
@@ -50,6 +52,8 @@ class CamProfile:
     Over each turn of the shaft y grows by ``advance``: 0 for an axis that returns, the stroke
     for one that accumulates (a belt).
 
+    Segments with the law ``auto`` are joined to their neighbours (`matched`).
+
     Parameters
     ----------
     segments : Iterable[Segment]
@@ -72,6 +76,7 @@ class CamProfile:
         self.accumulate = accumulate
         if problems := program_problems(self.segments, accumulate):
             raise ConfigurationError(problems)
+        self.segments = matched(self.segments)
         self.advance = math.fsum(s.lift for s in self.segments) if accumulate else 0.0
         self._parts = tuple(self._join())
         self.curve = Piecewise(
@@ -85,9 +90,13 @@ class CamProfile:
     def _join(self) -> Iterable[Piecewise]:
         start, lifts = 0.0, [0.0]
         for each in self.segments:
-            yield each.law.curve.scaled(start, each.end, each.lift, math.fsum(lifts))
+            yield each.law.curve.scaled(start, each.end, each.gain, math.fsum(lifts))
             start = each.end
             lifts.append(each.lift)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the compiled function out: it is made anew where it is needed."""
+        return {key: value for key, value in self.__dict__.items() if key != 'sample'}
 
     @cached_property
     def sample(self) -> Sampler:
@@ -193,18 +202,20 @@ class CamProfile:
         return tuple(found)
 
     def _velocity_problems(self) -> list[Problem]:
-        ends = {part.start: s.name for part, s in zip(self._parts, self.segments)}
-        return [
-            Problem(
-                f'{ends.get(jump.at, self.segments[0].name)}.law',
-                next(s.law.name for s in self.segments if s.end > jump.at),
+        names = {part.start: n for n, part in enumerate(self._parts)}
+        problems = []
+        for jump in self.jumps(1):
+            n = names.get(jump.at, 0)
+            before, after = self.segments[n - 1], self.segments[(n + 1) % len(self.segments)]
+            start, end = before.law.ends[1], after.law.ends[0]
+            problems.append(Problem(
+                f'{self.segments[n].name}.law', self.segments[n].law.name,
                 'the velocity of a cam must not step: it steps by '
                 f'{jump.amount:.6g} per rad at {jump.at / DEGREE:.6g} deg',
                 'take a law that starts and ends at rest, or one that meets its neighbour '
-                'at the same velocity',
-            )
-            for jump in self.jumps(1)
-        ]
+                f'at the same velocity; from {start.value} to {end.value} these run smoothly: '
+                + ', '.join(laws_between(start, end))))
+        return problems
 
 
 def program_problems(segments: tuple[Segment, ...], accumulate: bool) -> list[Problem]:

@@ -49,6 +49,16 @@ class Segment:
         """Whether the axis stands still in this segment."""
         return self.law.name == 'dwell'
 
+    @property
+    def is_auto(self) -> bool:
+        """Whether the neighbours decide about the curve."""
+        return self.law.name == 'auto'
+
+    @property
+    def gain(self) -> float:
+        """Factor from the law to the position: 1 for `auto`, whose curve has the axis' unit."""
+        return 1.0 if self.is_auto else self.lift
+
 
 def segment(name: str, end_deg: float, lift: float = 0.0, law: str = 'dwell',
             **parameters: Any) -> Segment:

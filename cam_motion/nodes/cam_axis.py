@@ -17,32 +17,30 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.axis import axis_table, build_axis, CoupledAxis
-from cam_motion.io.format_parameters import STAGED
 from cam_motion.io.axis_parameters import is_coupling
+from cam_motion.io.format_parameters import STAGED
 from cam_motion.io.parameters import ParameterSpec
 from cam_motion.nodes import diagnostics
+from cam_motion.nodes.axis_outputs import AxisOutputs, DriveValues
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.parameters import values_of
 from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from cam_motion.nodes.runner import run
+from cam_motion.nodes.shaft_input import ShaftInput
 from cam_motion.nodes.staging import is_staged, own_values, Staging
-from cam_motion.nodes.wire import pack_point, unpack_point
-from cam_motion.runtime.coasting import Coasting
+from cam_motion.nodes.wire import pack_point
 from cam_motion.runtime.follower_settings import FollowerState
 from cam_motion.runtime.format_change import FormatFollower
 from cam_motion.runtime.planning import Plan, TransitionError
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
-from cam_motion.runtime.watchdog import ShaftWatch
 from cam_motion.units import RPM
 from rclpy.publisher import Publisher
-from rclpy.timer import Timer
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 SHAFT = 'shaft'
-_LOOKS = 4  # for a silent shaft, within its timeout
 
 Listener = Callable[[Point], None]
 
@@ -69,6 +67,10 @@ class CamAxis(ManagedNode):
         """Called with every setpoint: drives and following axes of the same process."""
         self.bound_listeners: list[Callable[[float], None]] = []
         """Called with the highest speed of the shaft [rad/s] whenever it changes."""
+        self.source: Callable[[], AxisOutputs] | None = None
+        """Gives the outputs of the axis that is followed, where it is of the same process."""
+        self.drive: DriveValues | None = None
+        """Gives the parameters of the drive of the axis, where it is of the same process."""
         self._own_process = own_process
         self._setpoints: Publisher | None = None
         super().__init__(name, **options)
@@ -96,24 +98,23 @@ class CamAxis(ManagedNode):
         settings = self.axis.values
         self._follower = FormatFollower(
             self.axis.layout, self.axis.settings, settings['engage_at_start'])
-        self._stop_limits = RampLimits(settings['stop_acceleration'], settings['stop_jerk'])
         self._dead_time = settings['dead_time']
-        self._watch = ShaftWatch(settings['master_timeout'])
+        self._shaft = ShaftInput(
+            self, self.followed, settings['master_timeout'],
+            RampLimits(settings['stop_acceleration'], settings['stop_jerk']),
+            self._follow, self._on_shaft_lost)
         self._last: Point | None = None  # the last setpoint
         self._told: FollowerState | None = None  # the state that has been published
         self._bound = math.nan  # highest speed of the shaft as published [rad/s]
-        self._answered = 0
-        self._refused = 0
-        self._coasting: Coasting | None = None
-        self._own_timers: list[Timer] = []
         self._setpoints = self.make_publisher(JointTrajectoryPoint, '~/setpoint', SETPOINTS)
         self._max_speed = self.make_publisher(Float64, '~/max_speed_cpm', LATCHED)
+        self.outputs = AxisOutputs(self, self.axis, self.drive, self.source)
         self._staging = Staging(self, self.axis, self._follower, self._adopt)
         self.make_service(SetBool, '~/engage', self._on_engage)
         self.make_service(Trigger, '~/reset', self._on_reset)
         if self._own_process:
             self.make_subscription(
-                JointTrajectoryPoint, self.followed, self._on_shaft, SETPOINTS, raw=True)
+                JointTrajectoryPoint, self.followed, self._shaft.take_bytes, SETPOINTS, raw=True)
 
     @property
     def followed(self) -> str:
@@ -128,19 +129,16 @@ class CamAxis(ManagedNode):
 
     def activate(self) -> None:
         """Wait for the shaft."""
-        self._watch.forget()
+        self._shaft.start()
         self._tell()
         self._staging.tell()
-        self._own_timers = [self.create_timer(
-            self._watch.timeout / _LOOKS, self._look_for_shaft, clock=self.steady_clock)]
 
     def deactivate(self) -> None:
         """Leave a hold setpoint behind: the last position, no velocity, no acceleration."""
-        while self._own_timers:
-            self.destroy_timer(self._own_timers.pop())
-        self._coasting = None
+        self._shaft.stop()
         if self._last is not None:
             self._emit(self._last._replace(velocity=0.0, acceleration=0.0))
+        self.outputs.hold(self._last)
         self._told = None
 
     # Following
@@ -155,25 +153,8 @@ class CamAxis(ManagedNode):
             Angle, speed and acceleration of the shaft.
 
         """
-        if not self.active or self._coasting is not None:
-            return
-        if not self._watch.note(point, self.steady_now()):
-            self.get_logger().error(
-                f'{self.followed}: {self._watch.reason}: left out; are there two masters?',
-                throttle_duration_sec=1.0)
-            return
-        self._follow(point)
-        self._answered += 1
-
-    def _on_shaft(self, data: bytes) -> None:
-        point = unpack_point(data)
-        if point is not None:
-            self.answer(point)
-            return
-        self._refused += 1
-        self.get_logger().warning(
-            f'{self.followed}: a point without exactly one finite position, velocity and '
-            'acceleration was left out', throttle_duration_sec=1.0)
+        if self.active:
+            self._shaft.take(point)
 
     def _follow(self, point: Point) -> None:
         phi, omega, alpha, sec, nanosec = point
@@ -183,7 +164,10 @@ class CamAxis(ManagedNode):
             omega += lead * alpha
         follower = self._follower
         position, velocity, acceleration = follower.answer(phi, omega, alpha)
-        self._emit(Point(position, velocity, acceleration, sec, nanosec))
+        setpoint = Point(position, velocity, acceleration, sec, nanosec)
+        self.outputs.follow((phi, omega, alpha), follower.motion)
+        self._emit(setpoint)
+        self.outputs.answer(point, setpoint)
         if follower.state is not self._told:
             self._tell()
 
@@ -207,7 +191,9 @@ class CamAxis(ManagedNode):
 
     def _adopt(self, axis: CoupledAxis | None) -> None:
         """Be another axis from now on, if one is given, and say what that allows."""
-        self.axis = axis or self.axis
+        if axis is not None:
+            self.axis = axis
+            self.outputs.take(axis)
         if self.active:
             self._tell()
 
@@ -216,52 +202,19 @@ class CamAxis(ManagedNode):
     def begin_stop(self) -> None:
         """Follow a shaft that comes to rest; else stop on the axis' own curve."""
         if self.active:
-            self._watch.begin_stop(self.steady_now())
+            self._shaft.begin_stop()
 
     @property
     def stopped(self) -> bool:
         """Whether the axis stands."""
-        if not self.active or self._coasting is not None:
-            return not self.active or self._coasting.over
-        if self._watch.at_rest:
-            return True
-        if self._watch.goes_on(self.steady_now()):
-            self._coast('the axis was asked to end while the shaft went on', FollowerState.HELD)
-        return False
+        return not self.active or self._shaft.stopped
 
-    def _look_for_shaft(self) -> None:
-        now = self.steady_now()
-        watch = self._watch
-        if self._coasting is not None or not watch.lost(now):
-            return
-        if watch.astray:
-            self._coast(watch.reason, FollowerState.FAULT)
+    def _on_shaft_lost(self, state: FollowerState, reason: str) -> None:
+        if state is FollowerState.STOPPING_ON_CURVE:
+            self._follower.coast()
         else:
-            self._coast(f'{self.followed} has been silent for {watch.age(now):.3g} s',
-                        FollowerState.HELD)
-
-    def _coast(self, reason: str, state: FollowerState) -> None:
-        """Turn the shaft on from its last point to rest, so as to stop on the curve."""
-        watch = self._watch
-        self.get_logger().error(f'{reason}: stopping on the curve')
-        self._coasting = Coasting(
-            watch.last, watch.period, self.steady_now() - watch.age(self.steady_now()),
-            self._stop_limits, reason, state)
-        self._follower.coast()
+            self._follower.hold(state, reason)
         self._tell()
-        self._own_timers.append(self.create_timer(
-            watch.period, self._on_coast, clock=self.steady_clock))
-
-    def _on_coast(self) -> None:
-        coasting = self._coasting
-        for point in coasting.due(self.steady_now()):
-            self._follow(point)
-        if coasting.over:
-            self.destroy_timer(self._own_timers.pop())
-            self._coasting = None
-            self._follower.hold(coasting.state, coasting.reason)
-            self._watch.forget()
-            self._tell()
 
     # Commands
 
@@ -276,7 +229,7 @@ class CamAxis(ManagedNode):
     def _command(self, response: Any, work: Callable[[], Plan | None], planned: str,
                  done: str) -> Any:
         response.success = False
-        if not self.active or self._coasting is not None:
+        if not self.active or self._shaft.coasting:
             response.message = 'the node is not active' if not self.active else (
                 'the axis is stopping on its curve: ask again when it stands')
             return response
@@ -366,14 +319,16 @@ class CamAxis(ManagedNode):
         """
         if self._setpoints is None:
             return diagnostics.OK, {}
-        last, watch, follower = self._last, self._watch, self._follower
+        last, shaft, follower = self._last, self._shaft, self._follower
+        watch = shaft.watch
         values: dict[str, Any] = {
-            'setpoints': self._answered, 'refused_points': self._refused,
-            'points_of_another_shaft': watch.refused}
+            'setpoints': shaft.answered, 'refused_points': shaft.refused,
+            'points_of_another_shaft': watch.refused, 'missed_ticks': watch.missed,
+            **self.outputs.health()}
         if last is not None:
             values |= {'position': last.position, 'velocity': last.velocity,
                        'acceleration': last.acceleration, 'unit': self.axis.unit,
-                       'shaft_age_s': watch.age(self.steady_now())}
+                       'shaft_age_s': shaft.age}
         bound = follower.speed_bound
         if bound is not None:
             values |= {'max_speed_cpm': bound.omega / RPM,
@@ -382,7 +337,8 @@ class CamAxis(ManagedNode):
             values['reason'] = follower.reason
         if follower.state in (FollowerState.HELD, FollowerState.FAULT) or watch.reason:
             return diagnostics.ERROR, values
-        return diagnostics.WARN if self._refused else diagnostics.OK, values
+        bad = shaft.refused or self.outputs.misses
+        return diagnostics.WARN if bad else diagnostics.OK, values
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -132,6 +132,8 @@ def make_line(**options: Any) -> list[ManagedNode]:
     for axis in axes.values():
         source = axes.get(values_of(axis).get('follows', ''), master)
         source.listeners.append(axis.answer)
+        if isinstance(source, CamAxis):
+            axis.source = partial(getattr, source, 'outputs')
         if isinstance(master, MasterShaft):
             master.sections = lambda: {
                 name: own_values(values_of(node)) for name, node in axes.items()}
@@ -141,6 +143,8 @@ def make_line(**options: Any) -> list[ManagedNode]:
         followed = axes.get(values_of(drive).get('axis', ''))
         if followed is not None:
             followed.listeners.append(drive.answer)
+            if not drive.kind.TURNS_SHAFT:
+                followed.drive = partial(values_of, drive)
     line.parts = [master, *axes.values(), *(drive for drive in drives if drive is not master)]
     return [*line.parts, line]
 

@@ -83,7 +83,8 @@ class LineShaftMode(DriveMode):
         self._stopped_at: float | None = None  # the last since it was switched on [rad]
         self._codec = JointStateCodec(JOINTS, with_effort=True)
         node = self.node
-        self._ticker = ShaftTicker(node, checked, self.listeners, self._tick, waits=True)
+        self._ticker = ShaftTicker(
+            node, checked, self.listeners, self._tick, settings.tracks, waits=True)
         self._states = node.make_publisher(JointState, '~/drive_state', SETPOINTS)
         node.make_service(SetBool, '~/run', self._when_active(
             lambda request: self._run() if request.data else self._switch_off()))
@@ -169,7 +170,7 @@ class LineShaftMode(DriveMode):
         if self.node.count_publishers(SHAFT) > 1:
             values |= {'reason': 'another node publishes the shaft too'}
             return diagnostics.ERROR, values
-        bad = values['missed_ticks'] or self._stalls
+        bad = values['missed_ticks'] or self._stalls or self._ticker.tracks.misses
         return diagnostics.WARN if bad else diagnostics.OK, values
 
     @property

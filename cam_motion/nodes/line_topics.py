@@ -16,6 +16,7 @@ from cam_motion.io.axis import Values
 from cam_motion.io.interlocks import line_values
 from cam_motion.io.machine import guess_line, shaft_drives
 from cam_motion.io.servo_config import SERVO
+from cam_motion.io.tracks import track_names
 from cam_motion.nodes.diagnostics import TOPIC as DIAGNOSTICS
 from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from rclpy.qos import QoSProfile
@@ -62,6 +63,10 @@ def topics_of(sections: Mapping[str, Values]) -> list[LineTopic]:
         *(LineTopic(f'{drive}/drive_state', _JOINTS, SETPOINTS) for drive in names['drives']),
         *(LineTopic(f'{drive}/actual', _POINT, SETPOINTS) for drive in names['drives']
           if sections.get(drive, {}).get('mode') == SERVO),
+        *(LineTopic(f'{part}/{track}', 'std_msgs/msg/Bool', LATCHED)
+          for part in parts for track in track_names(sections.get(part, {}))),
+        *(LineTopic(f'{axis}/trajectory', 'trajectory_msgs/msg/JointTrajectory', SETPOINTS)
+          for axis in names['axes'] if sections.get(axis, {}).get('trajectory.rate_hz')),
         *(LineTopic(f'{part}/state', _TEXT, LATCHED) for part in parts),
         LineTopic(DIAGNOSTICS, 'diagnostic_msgs/msg/DiagnosticArray', SETPOINTS),
     ]

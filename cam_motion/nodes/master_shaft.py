@@ -19,11 +19,12 @@ from cam_motion.errors import ConfigurationError
 from cam_motion.io.axis import names_in
 from cam_motion.io.axis_limits import ramp_room
 from cam_motion.io.machine import build_master
-from cam_motion.io.parameters import MASTER_SHAFT
+from cam_motion.io.parameters import MASTER_SHAFT, ParameterSpec
+from cam_motion.io.tracks import track_table
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.encoder_input import EncoderInput
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.parameters import section_of
+from cam_motion.nodes.parameters import section_of, values_of
 from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.shaft_ticker import Listener, SHAFT, ShaftTicker
@@ -69,7 +70,6 @@ class MasterShaft(ManagedNode):
 
     """
 
-    TABLE = MASTER_SHAFT
     LIVE = frozenset({'speed_cpm'})
 
     def __init__(self, name: str = 'master_shaft', own_process: bool = True, **options: Any,
@@ -82,6 +82,11 @@ class MasterShaft(ManagedNode):
         self.sections: Callable[[], Mapping[str, Mapping[str, Any]]] = sections_beside
         """Gives the parameters of all axes of the line, by name."""
         self._ticker: ShaftTicker | None = None
+
+    @property
+    def table(self) -> tuple[ParameterSpec, ...]:
+        """List the parameters, which depend on the tracks that the shaft has."""
+        return (*MASTER_SHAFT, *track_table(values_of(self), of_axis=False))
 
     def configure(self, values: dict[str, Any]) -> None:
         """
@@ -100,7 +105,7 @@ class MasterShaft(ManagedNode):
         self._run_at: float | None = None  # when the shaft is to start on its own
         self._now = 0.0  # time of the last tick: commands take effect behind it
         self._allowed: dict[str, float] = {}  # highest speed by axis [rad/s]
-        self._ticker = ShaftTicker(self, checked, self.listeners, self._tick)
+        self._ticker = ShaftTicker(self, checked, self.listeners, self._tick, settings.tracks)
         self._encoder = EncoderInput(self, checked, self._ticker) if (
             checked['encoder.topic']) else None
         self.make_subscription(
@@ -217,7 +222,8 @@ class MasterShaft(ManagedNode):
         if self.count_publishers(SHAFT) > 1:
             values |= {'reason': 'another node publishes the shaft too'}
             return diagnostics.ERROR, values
-        return diagnostics.WARN if values['missed_ticks'] else diagnostics.OK, values
+        bad = values['missed_ticks'] or self._ticker.tracks.misses
+        return diagnostics.WARN if bad else diagnostics.OK, values
 
     def take_changes(self, changes: Mapping[str, Any]) -> str:
         """

@@ -12,8 +12,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from cam_motion.io.tracks import TrackSettings
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.qos import SETPOINTS
+from cam_motion.nodes.track_output import TrackOutput
 from cam_motion.nodes.wire import JointStateCodec, pack_point
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ticks import NANOSECONDS, TickSchedule
@@ -43,6 +45,8 @@ class ShaftTicker:
     tick : Callable[[int], None]
         Called with the time of each tick that is due, on the machine's time base [ns]; to
         `publish` it.
+    tracks : Mapping[str, TrackSettings]
+        Cam tracks of the shaft by name.
     waits : bool
         Whether that time base stands still over ticks that are given up, so that a shaft which
         is integrated, and which has not turned meanwhile, goes on from where it was. Else it
@@ -56,6 +60,8 @@ class ShaftTicker:
         Ticks published.
     last_ns : int
         Time of the last one [ns].
+    tracks : TrackOutput
+        The cam tracks.
     given_up : int
         Ticks over which the time base has stood still.
 
@@ -63,7 +69,7 @@ class ShaftTicker:
 
     def __init__(self, node: ManagedNode, values: Mapping[str, Any],
                  listeners: Sequence[Listener], tick: Callable[[int], None],
-                 waits: bool = False) -> None:
+                 tracks: Mapping[str, TrackSettings], waits: bool = False) -> None:
         """Make the topics and a timer that does not run yet."""
         self._node = node
         self._tick = tick
@@ -81,6 +87,7 @@ class ShaftTicker:
         self._codec = JointStateCodec([node.get_name()], with_effort=False)
         self.points = node.make_publisher(JointTrajectoryPoint, SHAFT, SETPOINTS)
         self.joint_states = node.make_publisher(JointState, 'joint_states', SETPOINTS)
+        self.tracks = TrackOutput(node, tracks)
         self._timer: Timer = node.create_timer(
             1.0 / values['rate_hz'], self._on_timer, clock=node.tick_clock, autostart=False)
 
@@ -93,6 +100,7 @@ class ShaftTicker:
     def pause(self) -> None:
         """Cease to tick."""
         self._timer.cancel()
+        self.tracks.release()
 
     def close(self) -> None:
         """Give the timer back."""
@@ -111,7 +119,7 @@ class ShaftTicker:
 
         """
         self.last_ns = time_ns
-        self._emit(phi, omega, alpha)
+        self.tracks.answer(self._emit(phi, omega, alpha))
         if self._ticks_per_state and self.count % self._ticks_per_state == 0:
             self.joint_states.publish(self._codec.pack(self.stamp(time_ns), (phi,), (omega,)))
         self.count += 1
@@ -171,7 +179,7 @@ class ShaftTicker:
             'cycles': int(phi // TURN), 'ticks': self.count, 'missed_ticks': schedule.missed,
             'late_ticks': schedule.late, 'worst_lateness_us': 1e-3 * schedule.worst_ns,
             'clock_restarts': schedule.restarts,
-        }
+        } | self.tracks.health()
 
     def _on_timer(self) -> None:
         node, schedule = self._node, self.schedule
@@ -198,8 +206,9 @@ class ShaftTicker:
         """Give the time of a tick on the machine's time base."""
         return self.schedule.time_ns(tick - self.given_up)
 
-    def _emit(self, phi: float, omega: float, alpha: float) -> None:
+    def _emit(self, phi: float, omega: float, alpha: float) -> Point:
         point = Point(phi, omega, alpha, *divmod(self.last_ns, NANOSECONDS))
         self.points.publish(pack_point(*point))
         for listener in self._listeners:
             listener(point)
+        return point

@@ -10,8 +10,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 import math
-from typing import Any
+import sys
+from threading import Thread
+from typing import Any, TypeVar
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import axis_table, build_axis, CoupledAxis
@@ -25,15 +28,21 @@ from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from cam_motion.runtime.format_change import Format, FormatFollower
 from cam_motion.runtime.planning import TransitionError
 from cam_motion.units import DEGREE
+from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.timer import Timer
-from rcl_interfaces.msg import ParameterDescriptor
 from std_msgs.msg import Float64
 
 TAKE_OVER = 'format_change'
 """Topic by which all axes are told when to take over what they have staged."""
 
+_Result = TypeVar('_Result')
+
+BUSY = 'the format is being looked at: set it again in a moment'
+"""Reason for which a format is not staged yet while the shaft turns."""
+
+_GIVE_WAY = 0.0005  # how long the thread that answers the shaft may wait for another one [s]
 _NOTHING = {spec.name: spec.default for spec in STAGED}
 
 
@@ -104,6 +113,8 @@ class Staging:
         self._node, self._axis, self._follower, self._adopt = node, axis, follower, adopt
         self._staged: tuple[CoupledAxis, Mapping[str, Any], Format] | None = None
         self._timer: Timer | None = None
+        self._asked: tuple[Any, ...] = ()  # what is being looked at in the background
+        self._answer: Future[tuple[CoupledAxis, dict[str, Any]]] | None = None
         follower.on_taken = self._on_taken
         self._told = node.make_publisher(Float64, f'~/{TAKE_OVER}', LATCHED)
         node.make_subscription(Float64, TAKE_OVER, self._on_take_over, SETPOINTS)
@@ -157,22 +168,25 @@ class Staging:
             return ''
         if not self._node.active:
             return 'the node is not active'
+        if self._staged is not None:
+            return f'another format is staged already; {self.refusal}'
+        asked = tuple(values[name] for name in _NOTHING)
+        if self._answer is None or self._asked != asked:
+            self._asked, self._answer = asked, in_background(
+                lambda: _built(self._axis, values['staged']))
+        if self._follower.turning and not self._answer.done():
+            return BUSY  # compiling takes as long as many shaft points
+        answer, self._answer = self._answer, None
         try:
-            self._staged = self._checked(values)
+            self._staged = self._checked(*answer.result(), values)
         except ConfigurationError as error:
             return '; '.join(map(str, error.problems))
         except TransitionError as error:
             return str(error)
         return ''
 
-    def _checked(self, values: Mapping[str, Any],
+    def _checked(self, axis: CoupledAxis, given: dict[str, Any], values: Mapping[str, Any],
                  ) -> tuple[CoupledAxis, Mapping[str, Any], Format]:
-        tree = parse_yaml(values['staged'], 'staged')
-        if not isinstance(tree, Mapping):
-            raise ConfigurationError([Problem('staged', tree, 'must be parameters of the axis')])
-        given = {name: value for name, value in flatten(tree).items() if value is not None}
-        axis = build_axis(self._axis.name, given)
-        check_fixed(self._axis, axis)
         new = Format(axis.layout, axis.settings, values['staged_at_deg'] * DEGREE,
                      values['staged_span_deg'] * DEGREE)
         plan = self._follower.check_format(new)
@@ -230,6 +244,48 @@ class Staging:
             overwrite(self._node, given)
         finally:
             self._node.own_change = False
+
+
+def _built(before: CoupledAxis, text: str) -> tuple[CoupledAxis, dict[str, Any]]:
+    """Compile a format; everything that takes long, and needs nothing but its arguments."""
+    tree = parse_yaml(text, 'staged')
+    if not isinstance(tree, Mapping):
+        raise ConfigurationError([Problem('staged', tree, 'must be parameters of the axis')])
+    given = {name: value for name, value in flatten(tree).items() if value is not None}
+    axis = build_axis(before.name, given)
+    check_fixed(before, axis)
+    axis.layout.speed_bound(axis.limits)  # the cams remember their peaks
+    return axis, given
+
+
+def in_background(work: Callable[[], _Result]) -> Future[_Result]:
+    """
+    Do something in a thread while this one goes on.
+
+    Parameters
+    ----------
+    work : Callable[[], Any]
+        What is to be done.
+
+    Returns
+    -------
+    Future
+        Its result to come.
+
+    """
+    future: Future[_Result] = Future()
+
+    def carry_out() -> None:
+        interval = sys.getswitchinterval()
+        sys.setswitchinterval(_GIVE_WAY)
+        try:
+            future.set_result(work())
+        except Exception as error:
+            future.set_exception(error)
+        finally:
+            sys.setswitchinterval(interval)
+    Thread(target=carry_out, daemon=True).start()
+    return future
 
 
 def overwrite(node: Node, given: Mapping[str, Any]) -> None:

@@ -67,8 +67,10 @@ class Follower:
         The transition that goes on or waits to begin.
     reason : str
         Why the axis is held or in fault.
+    motion : Motion
+        What the axis does now over the shaft angle, transitions included.
     sample : Callable[[float], tuple[float, float, float, float]]
-        Evaluates what the axis does now, transitions included, at a shaft angle [rad].
+        Evaluates it at a shaft angle [rad].
 
     """
 
@@ -87,7 +89,7 @@ class Follower:
         self._watch = True  # whether the next shaft point may change the state
 
     def _set_motion(self, motion: Motion) -> None:
-        self._motion = motion
+        self.motion = motion
         self.sample = motion.sample
 
     def answer(self, phi: float, omega: float, alpha: float) -> tuple[float, float, float]:
@@ -352,7 +354,7 @@ class Follower:
         shaft = self._shaft
         if shaft is None:
             raise TransitionError('no shaft point has been heard')
-        old = self._motion
+        old = self.motion
         if self.plan is not None:
             if self.plan.blend.share(shaft.phi) <= 0.0:
                 old = self.plan.blend.old  # it had not begun: this one takes its place

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-import math
 from typing import NamedTuple
 
-from cam_motion.motion.limits import Limits, SpeedBound
+from cam_motion.motion.limits import SpeedBound
 from cam_motion.runtime.demand import Demand
 from cam_motion.runtime.follower import Follower
 from cam_motion.runtime.follower_settings import FollowerSettings, FollowerState
@@ -28,10 +27,9 @@ from cam_motion.runtime.planning import (
     Timing,
     TransitionError,
 )
-from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.runtime.transition import Blend
-from cam_motion.units import DEGREE, RPM, TURN
+from cam_motion.units import DEGREE, RPM
 
 _STANDS = (FollowerState.DISENGAGED, FollowerState.HELD, FollowerState.FAULT)
 _LATE = 1e-9  # an angle passed by no more is not late [rad]
@@ -55,11 +53,11 @@ class Scheduled(NamedTuple):
     """
     A format that waits for the shaft.
 
-    The ``format``, the unwrapped shaft angle ``start`` [rad], the ``sense`` in which the shaft
+    The ``new`` format, the unwrapped shaft angle ``start`` [rad], the ``sense`` in which the shaft
     comes to it, and the ``plan`` of the transition; None for an axis that stands.
     """
 
-    format: Format
+    new: Format
     start: float
     sense: float
     plan: Plan | None
@@ -98,6 +96,11 @@ class FormatFollower(Follower):
         super().__init__(layout, settings, engaged)
         self.scheduled: Scheduled | None = None
         self.on_taken: Callable[[], None] = _nothing
+
+    @property
+    def turning(self) -> bool:
+        """Whether the shaft turns, as far as the axis knows."""
+        return self._shaft is not None and bool(self._shaft.omega or self._shaft.alpha)
 
     def check_format(self, new: Format) -> Plan | None:
         """
@@ -200,7 +203,7 @@ class FormatFollower(Follower):
         shaft = self._shaft
         speed = 0.0 if shaft is None else abs(shaft.omega)
         layout = new.layout.continuing(self.layout, start, sense)
-        return fixed_plan(self._motion, layout, start, sense * new.span, new.settings, speed)
+        return fixed_plan(self.motion, layout, start, sense * new.span, new.settings, speed)
 
     @property
     def speed_bound(self) -> SpeedBound | None:
@@ -208,7 +211,7 @@ class FormatFollower(Follower):
         now, waiting = super().speed_bound, self.scheduled
         if waiting is None or waiting.plan is None:
             return now
-        then = waiting.format.layout.speed_bound(waiting.format.settings.limits)
+        then = waiting.new.layout.speed_bound(waiting.new.settings.limits)
         return min((b for b in (now, then) if b is not None), key=lambda b: b.omega, default=None)
 
     def _progress(self, phi: float) -> None:
@@ -222,7 +225,7 @@ class FormatFollower(Follower):
         self._watch = self.plan is not None or self.scheduled is not None
 
     def _take_over(self, waiting: Scheduled) -> None:
-        plan, new = waiting.plan, waiting.format
+        plan, new = waiting.plan, waiting.new
         self.layout = replace(new.layout, origin=self.layout.origin, shift=self.layout.shift)
         if plan is not None and isinstance(plan.goal, Layout):
             self.layout = plan.goal

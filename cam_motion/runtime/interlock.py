@@ -25,7 +25,7 @@ _COARSEST = 0.2  # longest stretch between joints that so many points can serve 
 _INSIDE = 1e-9  # how far from a joint its two sides are read [rad]
 _HALVINGS = 50
 _THIRDS = 60
-_MOVING = 1e-9  # of the greatest slope: less is rounding
+_MOVING = 1e-12  # of the greatest slope: less is rounding
 
 Function = Callable[[Array], Array]
 """Evaluates something at n shaft angles [rad]."""
@@ -63,7 +63,24 @@ class Interlock(Protocol):
 
     def judge(self, motions: Mapping[str, Motion], low: float, high: float,
               repeats: bool = True) -> Verdict:
-        """Find the least margin over a range of shaft angles [rad], which may repeat itself."""
+        """
+        Find the least margin over a range of shaft angles.
+
+        Parameters
+        ----------
+        motions : Mapping[str, Motion]
+            Motions by axis.
+        low, high : float
+            Range of shaft angles [rad].
+        repeats : bool
+            Whether the motions repeat after that range, so that its end meets its beginning.
+
+        Returns
+        -------
+        Verdict
+            Whether it is kept, and by how much.
+
+        """
 
 
 @dataclass(frozen=True)
@@ -123,7 +140,7 @@ class Distance:
         at, smallest = _least(gap, _grid(pair, low, high))
         margin = smallest - self.least
         kept = margin >= -1e-12 * (1.0 + abs(self.least))
-        place = f'at {at / DEGREE % 360.0:.4g} deg'
+        place = f'at {_angle(at)} deg'
         first, second = self.axes
         text = f'{first} and {second} come as near as {smallest:.6g} {place}'
         if kept:
@@ -223,7 +240,7 @@ class Windows:
             start, end = max(both, key=lambda window: window[1] - window[0])
             return Verdict(False, start - end, start, (
                 f'{one} ({out_1}) and {two} ({out_2}) are out of rest at once from '
-                f'{_angle(start)} to {_angle(end)} deg: {(end - start) / DEGREE:.4g} deg too long'))
+                f'{_angle(start)} to {_angle(end)} deg: {(end - start) / DEGREE:.4g} deg'))
         laps = (-1, 0, 1) if repeats else (0,)
         gaps = [gap for a, b in first for c, d in second for lap in laps
                 for gap in _gaps(a, b, c + lap * (high - low), d + lap * (high - low))]
@@ -237,7 +254,7 @@ class Windows:
 
 
 def _angle(phi: float) -> str:
-    return f'{phi / DEGREE % 360.0:.4g}'
+    return f'{round(phi / DEGREE % 360.0, 3):g}'
 
 
 def _gaps(a: float, b: float, c: float, d: float) -> list[tuple[float, float]]:

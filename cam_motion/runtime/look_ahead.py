@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from cam_motion.runtime.motion_over_angle import Motion
-from cam_motion.runtime.ramp import RampStep
+from cam_motion.runtime.ramp import RampLimits, RampStep, speed_ramp
 from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 import numpy as np
 
@@ -23,6 +23,7 @@ SHORTEST = 2e-4
 
 _APART = 0.99 * SHORTEST  # but for rounding
 _ITERATIONS = 8  # of Newton's method, for a time within a few steps of a smooth motion
+_MOST_TO_REST = 20  # times in the part in which the shaft comes to rest
 _ROUNDING = 1e-12  # of an angle
 _NEAR = 1e-7  # how far before and behind a joint its two sides are looked at [rad]
 
@@ -75,6 +76,56 @@ def shaft_ahead(state: ShaftState, jerk: float, horizon: float) -> ShaftMotion:
         return ShaftMotion(0.0, state, steps)
     stands = ShaftMotion(0.0, state, steps[:1]).state(rest).phi
     return ShaftMotion(0.0, state, [RampStep(rest, jerk)], ShaftState(stands, 0.0, 0.0))
+
+
+def stopping_after(shaft: ShaftMotion, limits: RampLimits) -> ShaftMotion:
+    """
+    Let a shaft come to rest behind its last step.
+
+    Parameters
+    ----------
+    shaft : ShaftMotion
+        Its motion.
+    limits : RampLimits
+        Limits of the ramp to rest.
+
+    Returns
+    -------
+    ShaftMotion
+        That motion, then the ramp; it ends exactly at rest.
+
+    """
+    final = shaft.final
+    steps = speed_ramp(final.omega, final.alpha, 0.0, limits)
+    rest = ShaftMotion(0.0, final, steps).final.phi
+    return shaft.continued(steps, ShaftState(rest, 0.0, 0.0))
+
+
+def times_ahead(shaft: ShaftMotion, step: float, count: int) -> list[float]:
+    """
+    Choose times for a look-ahead: a grid, and a part behind it in which the shaft comes to rest.
+
+    Parameters
+    ----------
+    shaft : ShaftMotion
+        What the shaft does, from time 0 on.
+    step : float
+        Step of the grid [s].
+    count : int
+        Steps of the grid.
+
+    Returns
+    -------
+    list[float]
+        The times [s], from 0 on, rising; the last one is not before the shaft has settled.
+
+    """
+    grid = [k * step for k in range(count + 1)]
+    rest = shaft.settled_at - grid[-1]
+    if rest <= 0.0:
+        return grid
+    more = min(math.ceil(rest / step), _MOST_TO_REST)
+    return grid + [grid[-1] + rest * k / more for k in range(1, more)] + [shaft.settled_at]
 
 
 def _time_of_rest(omega: float, alpha: float, jerk: float) -> float:

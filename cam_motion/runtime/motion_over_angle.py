@@ -32,10 +32,36 @@ class Motion(Protocol):
         """Evaluate (y, y', y'', y''') at one shaft angle [rad]."""
 
     def __call__(self, phi: Array) -> Array:
-        """Evaluate position and three derivatives at n angles [rad]: shape (4, n)."""
+        """
+        Evaluate the motion and its derivatives.
+
+        Parameters
+        ----------
+        phi : ndarray, shape (n,)
+            Shaft angles [rad].
+
+        Returns
+        -------
+        ndarray, shape (4, n)
+            Position and three derivatives, in the unit of the axis per rad^order of the shaft.
+
+        """
 
     def joints(self, low: float, high: float) -> Array:
-        """Give the shaft angles in a range [rad] at which a derivative may step."""
+        """
+        Give the angles at which a derivative may step.
+
+        Parameters
+        ----------
+        low, high : float
+            Range of shaft angles [rad].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Shaft angles, rising [rad].
+
+        """
 
 
 @dataclass(frozen=True)
@@ -208,9 +234,14 @@ class Cascade:
     @cached_property
     def sample(self) -> Sampler:
         """Evaluate position and three derivatives at one angle [rad]."""
+        inner, outer = self.inner.sample, self.outer.sample
+
         def chained(phi: float) -> tuple[float, float, float, float]:
-            values = self(np.array([phi]))[:, 0]
-            return float(values[0]), float(values[1]), float(values[2]), float(values[3])
+            at, slope, bend, jerk = inner(phi)
+            y, y1, y2, y3 = outer(at)
+            return (
+                y, y1 * slope, y2 * slope * slope + y1 * bend,
+                y3 * slope * slope * slope + 3.0 * y2 * slope * bend + y1 * jerk)
         return chained
 
     def __call__(self, phi: Array) -> Array:
@@ -251,13 +282,13 @@ class Cascade:
         """
         edges = np.unique(np.concatenate([[low, high], self.inner.joints(low, high)]))
         found = [self.inner.joints(low, high)]
-        for a, b in zip(edges, edges[1:]):
-            phi = np.linspace(a, b, _LOOKS)
-            passed = self.inner(phi)[0]
-            for at in self.outer.joints(float(passed.min()), float(passed.max())):
-                k = np.flatnonzero((passed[:-1] - at) * (passed[1:] - at) < 0.0)
-                share = (at - passed[k]) / (passed[k + 1] - passed[k])
-                found.append(phi[k] + share * (phi[k + 1] - phi[k]))
+        phi = np.unique(np.concatenate(
+            [edges, *(np.linspace(a, b, _LOOKS) for a, b in zip(edges, edges[1:]))]))
+        passed = self.inner(phi)[0]
+        for at in self.outer.joints(float(passed.min()), float(passed.max())):
+            k = np.flatnonzero((passed[:-1] - at) * (passed[1:] - at) < 0.0)
+            share = (at - passed[k]) / (passed[k + 1] - passed[k])
+            found.append(phi[k] + share * (phi[k + 1] - phi[k]))
         return np.unique(np.concatenate(found))
 
 

@@ -50,3 +50,27 @@ def test_table_shows_infinite_jerk_with_the_jerk_inside_in_brackets(cam_motion, 
     assert '∞ [12]' in cubic
     assert max(map(len, done.stdout.splitlines())) <= int(columns)
     assert all(law in done.stdout for law in LAWS)
+
+
+def test_json_tells_what_each_law_does_at_its_ends(cam_motion, read_json):
+    ends = {law['name']: law['ends'] for law in read_json(cam_motion('laws', '--json').stdout)}
+    assert ends['modified_sine'] == ['rest', 'rest']
+    assert ends['double_harmonic'] == ['rest', 'turn']
+    assert ends['constant_velocity'] == ['constant velocity'] * 2
+
+
+def test_laws_of_the_contract_are_there(cam_motion, read_json):
+    names = {law['name'] for law in read_json(cam_motion('laws', '--json').stdout)}
+    assert names >= {
+        'dwell', 'constant_acceleration', 'trapezoidal_velocity', 'cubic', 'cycloidal',
+        'modified_trapezoid', 'modified_sine', 'simple_harmonic', 'polynomial_345',
+        'polynomial_4567'}
+
+
+def test_all_laws_are_drawn_on_one_sheet(cam_motion, tmp_path):
+    done = cam_motion('laws', '-o', str(tmp_path / 'new'), '--format', 'svg')
+    sheet = tmp_path / 'new' / 'laws.svg'
+    assert done.returncode == 0 and f'wrote {sheet}' in done.stdout
+    text = sheet.read_text()
+    assert all(law in text for law in ('modified_sine', 'polynomial_6_to_11', 'Cj 39.478'))
+    assert 'flexible_polynomial' not in text

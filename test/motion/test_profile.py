@@ -8,6 +8,7 @@
 """The cam profile: periodic, continuous, and honest about its steps and peaks."""
 
 import math
+import pickle
 
 from cam_motion import CamProfile, segment
 from cam_motion.errors import ConfigurationError
@@ -176,3 +177,11 @@ def test_a_cycle_may_miss_its_closure_by_rounding_only():
     assert CamProfile([*thirds, segment('c', 360.0, -0.3, 'cubic')]).jumps(0) == []
     with pytest.raises(ConfigurationError, match='must sum to zero'):
         CamProfile([*thirds, segment('c', 360.0, -0.30001, 'cubic')])
+
+
+def test_a_profile_travels_between_processes_also_when_it_has_been_sampled():
+    cam = CamProfile([segment('rise', end_deg=180.0, lift=1.0, law='cycloidal'),
+                      segment('fall', end_deg=360.0, lift=-1.0, law='cycloidal')])
+    sampled = cam.sample(1.0), cam.curve.sample(1.0)
+    again = pickle.loads(pickle.dumps(cam))
+    assert (again.sample(1.0), again.curve.sample(1.0)) == sampled

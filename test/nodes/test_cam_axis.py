@@ -118,7 +118,7 @@ def test_points_that_are_none_are_counted_and_left_out(world, monkeypatch):
     ]
     for number, message in enumerate(wrong, start=1):
         publisher.publish(message)
-        assert world.spin_until(lambda: node._refused == number)
+        assert world.spin_until(lambda: node._shaft.refused == number)
     assert setpoints == []
     assert len(warnings) == len(wrong)
     send(world, publisher, [message_of(good)], setpoints)

@@ -213,9 +213,9 @@ def test_a_second_master_is_not_followed(world, axis):
     turner.shaft.run(0.0)
     turner.turn(300)
     for k in range(20):
-        count = node._watch.refused
+        count = node._shaft.watch.refused
         turner.send(Point(1.0 + 0.01 * k, 3.0, 0.0, 900, k * PERIOD_NS))
-        assert world.spin_until(lambda: node._watch.refused > count)
+        assert world.spin_until(lambda: node._shaft.watch.refused > count)
         turner.turn(3)
     check_smooth(setpoints)
     exact = build_axis('axis', PRESS).profile
@@ -259,7 +259,7 @@ def test_a_master_started_anew_at_the_same_angle_goes_on(world, axis):
     again.shaft.run(again.time_ns * 1e-9)
     again.turn(200)
     assert node.state_text == 'in_sync'
-    assert node._watch.refused == 0
+    assert node._shaft.watch.refused == 0
 
 
 def test_the_shaft_may_run_backwards(world, axis):
@@ -340,19 +340,26 @@ def test_axes_left_alone_by_a_killed_master_stop_together_and_resume(world, star
     setpoints = {axis: world.points(f'{axis}/setpoint') for axis in axes}
     states = {axis: world.states(axis) for axis in axes}
     options = ['--params-file', machine_file]
-    processes = [start('cam_axis', *options, '-r', f'__node:={axis}') for axis in axes]
+    # longer than a busy machine ever leaves a process alone
+    processes = [start('cam_axis', *options, '-r', f'__node:={axis}', '-p', 'master_timeout:=2.0')
+                 for axis in axes]
     master = start('master_shaft', *options)
     assert world.spin_until(lambda: shaft and shaft[-1][1:3] == (200.0 * RPM, 0.0), 60.0)
+    assert world.spin_until(lambda: all(states[axis][-1:] == ['in_sync'] for axis in axes)), states
     world.spin_for(1.0)
+    assert all(states[axis][-1] == 'in_sync' for axis in axes), states
     master.signal(signal.SIGKILL)
-    assert world.spin_until(lambda: all(states[axis][-1:] == ['held'] for axis in axes))
+    assert world.spin_until(lambda: all(states[axis][-1:] == ['held'] for axis in axes)), (
+        states, [process.said for process in processes])
     assert all(process.running for process in processes)
     machine = load_machine(machine_file)
     ends = []
     for axis in axes:
         end = setpoints[axis][-1]
         assert end[1:3] == (0.0, 0.0)
-        ends.append(stop_angle(machine.diagram.axes[axis].profile, shaft, end))
+        phi = stop_angle(machine.diagram.axes[axis].profile, shaft, end)
+        assert phi is not None, (axis, end, shaft[-3:], [process.said for process in processes])
+        ends.append(phi)
     # one tick apart when killed between two deliveries; two when killed among late ticks
     assert max(ends) - min(ends) <= 2.0 * 200.0 * RPM * 0.002 * (1.0 + 1e-9)
     # a new master, started from its beginning: the axes wait for their reset, then come back
@@ -377,7 +384,7 @@ def test_axes_left_alone_by_a_killed_master_stop_together_and_resume(world, star
 
 
 def stop_angle(profile, shaft, end):
-    """Give the angle at which the shaft was brought to rest, as the axis did it."""
+    """Give the angle at which the axis brought the shaft to rest; None if it was none."""
     from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
     limits = RampLimits(150.0, 3000.0)
     found = []
@@ -386,5 +393,4 @@ def stop_angle(profile, shaft, end):
         y = profile.sample(motion.final.phi)[0]
         found.append((abs(y - end.position), motion.final.phi))
     miss, phi = min(found)
-    assert miss <= 1e-9
-    return phi
+    return phi if miss <= 1e-9 else None

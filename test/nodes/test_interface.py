@@ -18,10 +18,11 @@ import pytest
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.ros]
 
-AXIS = {'segments': ['rest'], 'rest.end_deg': 360.0}
+TRACK = {'tracks': ['track'], 'track.on_deg': [10.0], 'track.off_deg': [20.0]}
+AXIS = {'segments': ['rest'], 'rest.end_deg': 360.0, 'trajectory.rate_hz': 50.0, **TRACK}
 PRESS = read_sections(Path(__file__).resolve().parents[2] / 'config' / 'cam_press_drive.yaml')
 NODES = {
-    'master_shaft': (MasterShaft, {'obey': ['cam_axis']}), 'cam_axis': (CamAxis, AXIS),
+    'master_shaft': (MasterShaft, {'obey': ['cam_axis'], **TRACK}), 'cam_axis': (CamAxis, AXIS),
     'drive_sim': (DriveSim, {'axis': 'cam_axis'}),
 }
 # What ROS gives to every lifecycle node
@@ -41,7 +42,8 @@ def test_a_node_has_the_topics_and_services_of_the_table_and_no_others(world, ex
     node.trigger_configure()
     rows = [row for row in INTERFACE if row.node in (executable, 'all')]
     wanted = {kind: {
-        (row.name.replace('~', f'/{executable}').replace('<axis>', '/cam_axis')
+        (row.name.replace('~', f'/{executable}').replace('<axis>', '/cam_axis').replace(
+            '<track>', 'track')
          if row.name[0] in '~<' else '/' + row.name.lstrip('/'), row.type_name)
         for row in rows if row.kind == kind} for kind in ('publishes', 'subscribes', 'serves')}
 
@@ -57,13 +59,14 @@ def test_a_node_has_the_topics_and_services_of_the_table_and_no_others(world, ex
 
 
 def test_a_drive_that_turns_the_shaft_has_what_the_table_says_of_its_mode(world):
-    node = world.make(DriveSim, PRESS['press_drive'], name='drive_sim')
+    node = world.make(DriveSim, {**PRESS['press_drive'], **TRACK}, name='drive_sim')
     node.section = PRESS.get
     node.trigger_configure()
     rows = [row for row in INTERFACE if row.node in ('drive_sim: line_shaft', 'drive_sim', 'all')
             and row.kind != 'subscribes']
-    wanted = {(row.kind, row.name.replace('~', '/drive_sim') if row.name[0] == '~'
-               else '/' + row.name.lstrip('/'), row.type_name) for row in rows}
+    wanted = {(row.kind, row.name.replace('~', '/drive_sim').replace('<track>', 'track')
+               if row.name[0] == '~' else '/' + row.name.lstrip('/'), row.type_name)
+              for row in rows}
 
     def found():
         ask = world.probe

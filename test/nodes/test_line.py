@@ -27,7 +27,8 @@ STATE = 'std_msgs/msg/String'
 CONTRACT = {
     '/shaft': POINT, '/joint_states': 'sensor_msgs/msg/JointState',
     '/feeder/setpoint': POINT, '/press/setpoint': POINT, '/knife/setpoint': POINT,
-    **{f'/{axis}/max_speed_cpm': 'std_msgs/msg/Float64' for axis in ('feeder', 'press', 'knife')},
+    **{f'/{axis}/{name}': 'std_msgs/msg/Float64' for axis in ('feeder', 'press', 'knife')
+       for name in ('max_speed_cpm', 'format_change')},
     '/feeder_drive/drive_state': 'sensor_msgs/msg/JointState',
     '/master_shaft/state': STATE, '/feeder/state': STATE, '/press/state': STATE,
     '/knife/state': STATE, '/feeder_drive/state': STATE, '/line/state': STATE,

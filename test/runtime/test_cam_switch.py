@@ -14,7 +14,8 @@ from cam_motion.runtime.cam_switch import CamSwitch, CamTrack, Direction, time_t
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.units import DEGREE, RPM, TURN
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 MODULO = 5000.0  # of the published example, in its units

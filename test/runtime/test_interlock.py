@@ -22,7 +22,8 @@ from cam_motion.runtime.interlock import common_turns, Distance, Out, Side, Wind
 from cam_motion.runtime.motion_over_angle import CoupledCam, Standstill
 from cam_motion.runtime.transition import Blend
 from cam_motion.units import DEGREE, TURN
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 
@@ -42,8 +43,9 @@ def there_and_back(start, up, down, end, lift=1.0, law='cycloidal'):
         for (name, law, end_deg, lift), begin in zip(rows, before) if end_deg > begin]))
 
 
-def judged(first, second, out=(Out(Side.ABOVE, 0.5),) * 2, low=0.0, high=TURN, repeats=True):
-    return Windows('both', ('a', 'b'), out).judge({'a': first, 'b': second}, low, high, repeats)
+def judged(first, second):
+    out = Out(Side.ABOVE, 0.5)
+    return Windows('both', ('a', 'b'), (out, out)).judge({'a': first, 'b': second}, 0.0, TURN)
 
 
 def test_the_window_of_a_symmetric_cam_is_that_between_its_middles():
@@ -108,7 +110,8 @@ def test_the_smallest_gap_lies_where_the_two_come_nearest():
 @given(start=st.floats(0.0, 6.0), span=st.floats(0.3, 6.0), lift=st.floats(0.1, 2.0))
 def test_a_gap_over_one_common_transition_is_never_less_than_before_or_after(start, span, lift):
     gap = Distance('gap', ('a', 'b'), (1.0, -1.0), 3.0, 0.0)
-    old = {'a': there_and_back(0.0, 90.0, 90.0, 180.0), 'b': there_and_back(40.0, 90.0, 180.0, 250)}
+    old = {'a': there_and_back(0.0, 90.0, 90.0, 180.0),
+           'b': there_and_back(40.0, 90.0, 180.0, 250.0)}
     new = {'a': there_and_back(30.0, 70.0, 90.0, 300.0, lift),
            'b': there_and_back(20.0, 190.0, 200.0, 260.0, 0.5 * lift)}
     blends = {name: Blend(old[name], new[name], start, span) for name in old}

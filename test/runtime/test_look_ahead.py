@@ -30,13 +30,14 @@ from cam_motion.runtime.look_ahead import (
     stopping_after,
     times_ahead,
 )
-from cam_motion.runtime.motion_over_angle import Standstill
+from cam_motion.runtime.motion_over_angle import Cascade, Standstill
 from cam_motion.runtime.planning import Timing
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 from cam_motion.units import DEGREE, RPM, TURN
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 
@@ -244,6 +245,23 @@ def test_an_axis_that_stands_has_a_plain_grid():
                         [0.0, 0.05, 0.1])
     assert [tuple(point) for point in points] == [
         (0.0, 0.2, 0.0, 0.0), (0.05, 0.2, 0.0, 0.0), (0.1, 0.2, 0.0, 0.0)]
+
+
+def test_an_axis_behind_another_one_is_seen_through_it():
+    outer = build_axis('axis', {
+        'segments': ['up', 'down'], 'up.law': 'cycloidal', 'up.end_deg': 120.0, 'up.lift': 0.1,
+        'down.law': 'cycloidal', 'down.end_deg': 360.0, 'down.lift': -0.1, 'ratio': 4.0})
+    chain = Cascade(outer.layout.motion, motion_of('feeder'))
+    phi = np.linspace(-3.0, 9.0, 200)
+    one_by_one = np.array([chain.sample(float(x)) for x in phi]).T
+    assert one_by_one == pytest.approx(chain(phi), rel=1e-9, abs=1e-9)
+    # where the feeder passes a joint of the outer cam, and at its own joints
+    joints = chain.joints(0.0, 3 * TURN)
+    assert set(motion_of('feeder').joints(0.0, 3 * TURN)) <= set(joints)
+    passed = motion_of('feeder')(joints)[0]
+    for at in outer.layout.motion.joints(0.01, 0.89):
+        assert np.abs(passed - at).min() < 1e-4
+    assert errors(chain, steady, 50.0, 0.3)[0] < 1e-5
 
 
 # The shaft ahead

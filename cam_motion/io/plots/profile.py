@@ -107,7 +107,7 @@ def _peaks(profile: CamProfile, order: int) -> list[Peak]:
     found, start = [], 0.0
     for segment in profile.segments:
         if not segment.is_dwell:
-            curve = segment.law.curve.scaled(start, segment.end, segment.lift)
+            curve = segment.law.curve.scaled(start, segment.end, segment.gain)
             least, greatest = curve.extremes(order)
             found += [peak for peak, sense in ((least, -1.0), (greatest, 1.0))
                       if sense * peak.value > 0.0]

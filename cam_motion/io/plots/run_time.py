@@ -23,7 +23,8 @@ import numpy as np
 
 _SHADES = {
     'disengaged': '#DDDDDD', 'waiting': '#F3E9C6', 'engaging': '#CDE7D8', 'changing': '#CFE0F3',
-    'disengaging': '#EFD9E8', 'stopping_on_curve': '#F6D2C2', 'held': '#E9B9A6', 'fault': '#E89A9A',
+    'disengaging': '#EFD9E8', 'stopping_on_curve': '#F6D2C2', 'held': '#E9B9A6',
+    'fault': '#E89A9A',
 }
 """Background of each state but `in_sync`, which has none."""
 

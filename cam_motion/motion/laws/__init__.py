@@ -7,11 +7,28 @@
 # language governing permissions and limitations under the License.
 """Motion laws, one file per family; importing this package registers them all."""
 
-from cam_motion.motion.laws import harmonic, modified, polynomial, trapezoidal
-from cam_motion.motion.laws.law import Coefficients, LAWS, LawType, make_law, MotionLaw, register
+from cam_motion.motion.laws import (
+    harmonic,
+    modified,
+    polynomial,
+    scca,
+    trapezoidal,
+    with_conditions,
+)
+from cam_motion.motion.laws.boundary import Boundary
+from cam_motion.motion.laws.law import (
+    Coefficients,
+    LAWS,
+    laws_between,
+    LawType,
+    make_law,
+    MotionLaw,
+    register,
+)
 from cam_motion.motion.laws.parameters import LawParameter
 
 __all__ = [
-    'Coefficients', 'LAWS', 'LawParameter', 'LawType', 'MotionLaw', 'harmonic', 'make_law',
-    'modified', 'polynomial', 'register', 'trapezoidal',
+    'Boundary', 'Coefficients', 'LAWS', 'LawParameter', 'LawType', 'MotionLaw', 'harmonic',
+    'laws_between', 'make_law', 'modified', 'polynomial', 'register', 'scca', 'trapezoidal',
+    'with_conditions',
 ]

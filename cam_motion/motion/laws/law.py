@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 import math
 from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.motion.laws.boundary import Boundary
 from cam_motion.motion.laws.parameters import LawParameter
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import JOINT_TOLERANCE, Piecewise
@@ -118,6 +119,13 @@ class MotionLaw:
             rms_acceleration=math.inf if steps_velocity else curve.rms(2),
         )
 
+    @cached_property
+    def ends(self) -> tuple[Boundary, Boundary]:
+        """Tell what the law does at its start and at its end."""
+        peaks = (abs(self.curve.peak(1).value), abs(self.curve.peak(2).value))
+        (v0, v1), (a0, a1) = self.curve.end_values(1), self.curve.end_values(2)
+        return Boundary.of(v0, a0, *peaks), Boundary.of(v1, a1, *peaks)
+
 
 @dataclass(frozen=True)
 class LawType:
@@ -137,6 +145,8 @@ class LawType:
     build : Callable[..., Piecewise]
         Makes the rise from the parameters; raises `ConfigurationError` where they do not fit
         together.
+    any_ends : bool
+        Whether its parameters or neighbours can give its ends any velocity and acceleration.
 
     """
 
@@ -145,6 +155,7 @@ class LawType:
     source: str
     parameters: tuple[LawParameter, ...]
     build: Builder
+    any_ends: bool = False
 
 
 LAWS: dict[str, LawType] = {}
@@ -152,7 +163,7 @@ LAWS: dict[str, LawType] = {}
 
 
 def register(
-    name: str, summary: str, source: str, *parameters: LawParameter
+    name: str, summary: str, source: str, *parameters: LawParameter, any_ends: bool = False
 ) -> Callable[[Builder], Builder]:
     """
     Register the decorated builder as a law.
@@ -163,6 +174,8 @@ def register(
         See `LawType`.
     *parameters : LawParameter
         The parameters of the builder, in order.
+    any_ends : bool
+        See `LawType`.
 
     Returns
     -------
@@ -171,7 +184,7 @@ def register(
 
     """
     def enter(build: Builder) -> Builder:
-        LAWS[name] = LawType(name, summary, source, parameters, build)
+        LAWS[name] = LawType(name, summary, source, parameters, build, any_ends)
         return build
     return enter
 
@@ -219,3 +232,27 @@ def make_law(name: str, **parameters: Any) -> MotionLaw:
     if problems:
         raise ConfigurationError(problems)
     return MotionLaw(name, values, law.build(**values))
+
+
+def laws_between(start: Boundary, end: Boundary) -> list[str]:
+    """
+    List the laws that join two boundary conditions without a step of velocity or acceleration.
+
+    Parameters
+    ----------
+    start, end : Boundary
+        What the neighbours do where the law starts and where it ends.
+
+    Returns
+    -------
+    list[str]
+        Names, in the order of the registry; the dwell is no law between two positions.
+
+    """
+    return [name for name, law in LAWS.items() if name != 'dwell' and (
+        law.any_ends or _default_ends(law) == (start, end))]
+
+
+@cache
+def _default_ends(law: LawType) -> tuple[Boundary, Boundary]:
+    return make_law(law.name).ends

@@ -20,12 +20,16 @@ from cam_motion.errors import ConfigurationError, Problem
 SUM_TOLERANCE = 1e-6
 # A stage as short as this is what rounding leaves of a stage that is not there.
 SHORTEST_STAGE = 1e-12
+ANY_NUMBER = -1
+"""Count of a list that may hold any number of values."""
+LARGEST_VALUE = 1e12
+"""Largest magnitude of a boundary value; what is larger is a mistake."""
 
 
 @dataclass(frozen=True)
 class LawParameter:
     """
-    One parameter of a law: a fraction of the span, or several of them.
+    One parameter of a law: a number, mostly a fraction of the span, or several of them.
 
     Attributes
     ----------
@@ -36,7 +40,10 @@ class LawParameter:
     rule : str
         What is allowed, for people.
     count : int
-        0 for a single number, else how many numbers the list holds.
+        0 for a single number, `ANY_NUMBER` for a list of any length, else how many numbers the
+        list holds.
+    least, most : float
+        The range of each number.
 
     """
 
@@ -44,6 +51,8 @@ class LawParameter:
     default: float | tuple[float, ...] | None
     rule: str
     count: int = 0
+    least: float = 0.0
+    most: float = 1.0
 
     def check(self, value: Any) -> float | tuple[float, ...] | None:
         """
@@ -62,19 +71,19 @@ class LawParameter:
         Raises
         ------
         ConfigurationError
-            When it is not a number (or that many numbers) from 0 to 1.
+            When it is not a number (or that many numbers) within the range.
 
         """
         if value is None:
             return self.default
         numbers = [value] if self.count == 0 else value
         if isinstance(numbers, str) or not isinstance(numbers, Sequence) or (
-            self.count and len(numbers) != self.count
+            self.count > 0 and len(numbers) != self.count
         ):
             raise self.problem(value)
         for number in numbers:
             if isinstance(number, bool) or not isinstance(number, (int, float)) or not (
-                0.0 <= number <= 1.0
+                self.least <= number <= self.most
             ):
                 raise self.problem(value)
         cleaned = tuple(float(number) for number in numbers)

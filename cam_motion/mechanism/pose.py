@@ -1,0 +1,138 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""Positions of a linkage, and how far it goes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cam_motion.errors import CamMotionError
+from cam_motion.mechanism.linkage import Linkage
+from cam_motion.mechanism.singular import Singularity
+from cam_motion.motion.piece import Array
+from cam_motion.units import DEGREE
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """
+    The proof that a position is on the branch of the start.
+
+    Attributes
+    ----------
+    steps : int
+        Steps from the start.
+    kantorovich : float
+        The greatest number of Kantorovich of these steps: up to 1/2, Newton's method converges
+        to the only solution near by, for every point of the step.
+    orientation : int
+        Sign of the Jacobian's determinant; it changes only through a singular position.
+
+    """
+
+    steps: int
+    kantorovich: float
+    orientation: int
+
+
+@dataclass(frozen=True)
+class Pose:
+    """
+    One position of a linkage.
+
+    Attributes
+    ----------
+    linkage : Linkage
+        The linkage.
+    values : ndarray, shape (n,)
+        The variables, inputs first; angles are not wrapped [m, rad].
+    clearance : float
+        No singular position is nearer than this, all lengths divided by the longest one and
+        angles in radians.
+    certificate : Certificate
+        The proof that it is on the branch.
+
+    """
+
+    linkage: Linkage
+    values: Array
+    clearance: float
+    certificate: Certificate
+
+    def __getitem__(self, variable: str) -> float:
+        """Give a variable by its name [m, rad]."""
+        return float(self.values[self.linkage.variables.index(variable)])
+
+    @property
+    def text(self) -> str:
+        """Write the inputs for people."""
+        return ', '.join(f'{name} = {bound_text(self.linkage, name, self[name])}'
+                         for name in self.linkage.inputs)
+
+
+@dataclass(frozen=True)
+class Range:
+    """
+    How far one input goes while the others stay.
+
+    Attributes
+    ----------
+    low, high : float
+        Its bounds, themselves not reached [m, rad]; infinite where nothing stops it.
+    at_low, at_high : Singularity | None
+        What comes into line there.
+
+    """
+
+    low: float
+    high: float
+    at_low: Singularity | None
+    at_high: Singularity | None
+
+
+class SingularError(CamMotionError):
+    """
+    A way leads into a singular position.
+
+    Parameters
+    ----------
+    pose : Pose
+        The last position before it.
+    singularity : Singularity
+        What comes into line there.
+
+    """
+
+    def __init__(self, pose: Pose, singularity: Singularity) -> None:
+        """Keep the position and the name of what happens there."""
+        self.pose, self.singularity = pose, singularity
+        super().__init__(f'{pose.text} is a singular position: {singularity.text}')
+
+
+def bound_text(linkage: Linkage, name: str, value: float) -> str:
+    """
+    Write a value of a variable for people.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        The linkage.
+    name : str
+        The variable.
+    value : float
+        Its value [m, rad].
+
+    Returns
+    -------
+    str
+        Metres or degrees.
+
+    """
+    if name in linkage.angles:
+        return f'{value / DEGREE:.6g} deg'
+    return f'{value:.6g} m'

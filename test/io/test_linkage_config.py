@@ -1,0 +1,134 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""Linkages in machine files: the umbrella as described, every problem at its path, pictures."""
+
+import copy
+from pathlib import Path
+
+from cam_motion.errors import ConfigurationError
+from cam_motion.io.config import flatten, read_sections
+from cam_motion.io.linkage_config import build_linkage
+from cam_motion.io.plots.linkage import linkage_figure, run_case
+from cam_motion.mechanism.umbrella import Umbrella
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+import yaml
+
+pytestmark = pytest.mark.timeout(60)
+
+CONFIG = Path(__file__).resolve().parents[2] / 'config' / 'umbrella.yaml'
+GOOD = yaml.safe_load(CONFIG.read_text())['umbrella']['ros__parameters']
+
+
+@pytest.fixture(scope='module')
+def umbrella():
+    return build_linkage('umbrella', read_sections(CONFIG)['umbrella'])
+
+
+def edited(path, value):
+    """Give the parameters of the umbrella with one of them changed; None takes it away."""
+    tree = copy.deepcopy(GOOD)
+    *above, last = path.split('.')
+    place = tree
+    for key in above:
+        place = place[key]
+    if value is None:
+        del place[last]
+    else:
+        place[last] = value
+    return flatten(tree)
+
+
+def test_the_file_describes_the_umbrella_of_document_003(umbrella):
+    assert umbrella.linkage == Umbrella().linkage()
+
+
+def test_the_cases_of_the_document(umbrella):
+    sliding, opening, both = umbrella.cases.values()
+    assert sliding.inputs.rates == {'h1': -0.3}
+    crank = -2.0 * np.pi * umbrella.spools['h2']
+    assert opening.inputs.values['h1'] == 0.8
+    assert opening.inputs.rates == pytest.approx({'h2': crank})
+    assert both.inputs.rates == pytest.approx({'h1': -0.2, 'h2': crank})
+
+
+def test_the_closing_words_of_the_document_on_the_velocities_hold(umbrella):
+    times = np.linspace(0.0, 1.0, 21)
+    sliding, opening, _ = (
+        run_case(umbrella, case, times * case.duration) for case in umbrella.cases.values())
+    for each in sliding:  # links 3, 5 and 6 move as a unit
+        assert each.velocity['theta5'] == pytest.approx(each.velocity['theta3'], abs=1e-12)
+    for each in opening:  # links 2 and 3 are not affected by the crank
+        assert each.velocity['theta2'] == each.velocity['theta3'] == 0.0
+    for name in ('theta5', 'theta6'):  # slow at first, rapid at the end
+        speeds = [abs(each.velocity[name]) for each in opening]
+        assert speeds[0] < 0.3 and speeds[-1] == max(speeds) > 1.9 * speeds[0]
+
+
+@pytest.mark.parametrize('path, value, problem', [
+    ('type', 'crane', 'type'), ('inputs', 'h1', 'inputs'), ('unknowns', [1], 'unknowns'),
+    ('loops', ['rib', 'tip', 'type'], 'loops'), ('points', [*'ABCGFED', 'L2'], 'points'),
+    ('L2.length', -1.0, 'L2.length'), ('L2.length', None, 'L2.length'),
+    ('slide.length', 1.0, 'slide.length'), ('L2.body', 'link9', 'L2.body'),
+    ('L2.colour', 'red', 'L2.colour'), ('link2.angle', None, 'link2.angle'),
+    ('rib.path', ['d1', '-L9'], 'rib.path'), ('B.from', 'Q', 'B.from'),
+    ('h1.start', None, 'h1.start'), ('h1.start_deg', 3.0, 'h1.start'),
+    ('theta2.start_deg', None, 'theta2.start'), ('theta2.start_deg', 90.0, 'unknowns'),
+    ('theta2.spool_radius', 1.0, 'theta2.spool_radius'), ('h2.spool_radius', 0.0,
+                                                          'h2.spool_radius'),
+    ('sliding.duration', None, 'sliding.duration'), ('sliding.duration', 60.0,
+                                                     'sliding.duration'),
+    ('sliding.h1', 2.5, 'sliding.h1'), ('sliding.h3', 2.5, 'sliding.h3'),
+    ('sliding.h1_crank', 1.0, 'sliding.h1_crank'), ('h1', {'start_deg': 1.0}, 'h1.start_deg'),
+    ('turned', 1.0, 'turned'),
+])
+def test_a_problem_is_said_at_its_path(path, value, problem):
+    with pytest.raises(ConfigurationError) as caught:
+        build_linkage('umbrella', edited(path, value))
+    assert [each.path for each in caught.value.problems] == [problem]
+    assert all(each.rule for each in caught.value.problems)
+
+
+def test_problems_are_said_all_at_once():
+    values = {**edited('L2.length', -1.0), 'd1.turn_deg': 'left', 'link5.angel': 'theta5',
+              'tip.path': 'd4'}
+    with pytest.raises(ConfigurationError) as caught:
+        build_linkage('umbrella', values)
+    assert {each.path for each in caught.value.problems} == {
+        'L2.length', 'd1.turn_deg', 'link5.angel', 'tip.path'}
+
+
+VALUES = st.one_of(
+    st.none(), st.floats(), st.integers(), st.text(max_size=4), st.booleans(), st.just([]),
+    st.sampled_from(['h1', 'theta2', 'link2', 'frame', ['h1'], ['L2', '-L2'], 1e308, -1e6]))
+
+
+@given(st.lists(st.tuples(st.sampled_from(sorted(flatten(GOOD))), VALUES), max_size=3))
+@settings(max_examples=60, deadline=None)
+def test_no_edit_escapes_as_anything_but_problems(edits):
+    values = flatten(GOOD) | dict(edits)
+    for motion in ('sliding', 'opening', 'both'):  # they are gone through, which takes time
+        values = {key: each for key, each in values.items() if not key.startswith(motion)}
+    values.pop('motions')
+    try:
+        build_linkage('umbrella', values)
+    except ConfigurationError as error:
+        assert error.problems
+
+
+@pytest.mark.slow
+def test_a_picture_holds_the_curves_of_its_case(umbrella):
+    figure = linkage_figure(umbrella, umbrella.cases['opening'])
+    drawing, *panels = figure.axes
+    labels = [[line.get_label() for line in panel.lines] for panel in panels]
+    assert labels == [['theta2', 'theta3', 'theta5', 'theta6'],
+                      ['omega2', 'omega3', 'omega5', 'omega6'], ['F', 'E']]
+    assert drawing.get_title(loc='left') == 'umbrella: opening'
+    assert panels[0].get_title(loc='left') == 'h1 = 0.8 m, h2 from 1.2 to 0.2952 m'
