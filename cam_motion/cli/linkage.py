@@ -38,6 +38,8 @@ from cam_motion.io.linkage_data import motion_as_data, range_text
 from cam_motion.mechanism.linkage_motion import LinkageMotion, move
 from cam_motion.units import DEGREE
 
+_ROUNDING = 1e-13
+
 
 def add_to(verbs: Any) -> None:
     """
@@ -151,6 +153,11 @@ def _draw(settings: LinkageSettings, folder: Path) -> list[Path]:
     return files
 
 
+def _rounded(value: float) -> float:
+    """Give 0 for what is rounding beside the figures of any linkage."""
+    return value if abs(value) > _ROUNDING else 0.0
+
+
 def _print(settings: LinkageSettings, motion: LinkageMotion) -> None:
     linkage, pose, out = settings.linkage, motion.pose, console()
     variables = table(f'{settings.name} at {pose.text}', [
@@ -162,14 +169,14 @@ def _print(settings: LinkageSettings, motion: LinkageMotion) -> None:
         shown = math.remainder(value, math.tau) / DEGREE if turns else value
         unit = linkage.unit(name)
         row(variables, name, 'input' if name in linkage.inputs else '', number(shown, 8),
-            'deg' if turns else 'm', number(motion.velocity[name], 6), f'{unit}/s',
-            number(motion.acceleration[name], 6), f'{unit}/s²')
+            'deg' if turns else 'm', number(_rounded(motion.velocity[name]), 6),
+            f'{unit}/s', number(_rounded(motion.acceleration[name]), 6), f'{unit}/s²')
     out.print(variables)
     if motion.points:
         points = table('points', [('', 'left'), *((heading, 'right') for heading in (
             'x\nm', 'y\nm', 'vx\nm/s', 'vy\nm/s', 'ax\nm/s²', 'ay\nm/s²'))])
         for name, point in motion.points.items():
-            row(points, name, *(number(value, 6) for each in (
+            row(points, name, *(number(_rounded(value), 6) for each in (
                 point.position, point.velocity, point.acceleration)
                 for value in (each.real, each.imag)))
         out.print(points)

@@ -176,7 +176,8 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
     """
     names = {kind: names_in(given, kind) for kind in tables.PARTS}
     taken = {spec.name for spec in tables.LINKAGE}
-    problems, every = [], []
+    problems: list[Problem] = []
+    every: list[str] = []
     for kind, listed in names.items():
         problems += [Problem(kind, each, 'every part has a name of its own, other than the keys '
                              'of the section')

@@ -111,8 +111,8 @@ def move(assembly: Assembly, pose: Pose, rates: Mapping[str, float],
     vectors, slopes = equations.vectors(z), equations.slopes(z)
     motions = (equations.points @ vectors, equations.points @ (slopes @ rate),
                equations.points @ (slopes @ acceleration + bend))
-    values, rates_found, accelerations_found = (
-        dict(zip(linkage.variables, map(float, each))) for each in (z, rate, acceleration))
+    values, rates_found, accelerations_found = (  # + 0.0: no minus before a zero
+        dict(zip(linkage.variables, map(float, each + 0.0))) for each in (z, rate, acceleration))
     return LinkageMotion(
         pose, values, rates_found, accelerations_found,
         {point.name: PointMotion(*(complex(each[k]) for each in motions))

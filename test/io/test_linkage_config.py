@@ -8,12 +8,15 @@
 """Linkages in machine files: the umbrella as described, every problem at its path, pictures."""
 
 import copy
+from dataclasses import replace
 from pathlib import Path
 
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.config import flatten, read_sections
 from cam_motion.io.linkage_config import build_linkage
 from cam_motion.io.plots.linkage import linkage_figure, run_case
+from cam_motion.mechanism.assembly import Assembly
+from cam_motion.mechanism.planar import four_bar, slider_crank
 from cam_motion.mechanism.umbrella import Umbrella
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -132,3 +135,14 @@ def test_a_picture_holds_the_curves_of_its_case(umbrella):
                       ['omega2', 'omega3', 'omega5', 'omega6'], ['F', 'E']]
     assert drawing.get_title(loc='left') == 'umbrella: opening'
     assert panels[0].get_title(loc='left') == 'h1 = 0.8 m, h2 from 1.2 to 0.2952 m'
+
+
+@pytest.mark.parametrize('linkage', [four_bar(0.1, 0.3, 0.25, 0.35), slider_crank(0.1, 0.3)],
+                         ids=lambda linkage: linkage.name)
+def test_the_commonest_linkages_are_descriptions_too(linkage):
+    sections = read_sections(CONFIG.with_name(f'{linkage.name}.yaml'))
+    found = build_linkage(linkage.name, sections[linkage.name])
+    assert replace(found.linkage, start=linkage.start) == linkage
+    assert found.assembly.start.values == pytest.approx(Assembly(linkage).start.values, abs=1e-12)
+    last = run_case(found, found.cases['turn'], np.linspace(0.0, 1.0, 25))[-1]
+    assert last.position['theta2'] == pytest.approx(2.0 * np.pi)

@@ -118,7 +118,9 @@ def test_a_line_follows_the_real_shaft_on_its_orbit(world, press_file, press):
         assert state.effort[2] == pytest.approx(
             state.effort[1] + inertia * point.acceleration, abs=1e-9)
     assert told[-1] == 'running'
-    assert nodes[0].health()[0] == nodes[2].health()[0] == diagnostics.OK
+    level, values = nodes[0].health()
+    assert level == (diagnostics.WARN if values['missed_ticks'] else diagnostics.OK)
+    assert nodes[2].health()[0] == level
 
 
 def test_a_late_wake_up_costs_time_but_no_jump(world, drive):

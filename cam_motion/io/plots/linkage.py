@@ -154,6 +154,7 @@ def _draw(axes: Axes, settings: LinkageSettings, motions: Sequence[LinkageMotion
                       textcoords='offset points', fontsize=8.5)
     everything = [each.position for motion in motions for each in motion.points.values()]
     height = max(float(np.ptp(np.real(everything))), float(np.ptp(np.imag(everything))))
+    label = 'x [m]'
     if moving := _moving(motions[-1:]):
         arrows = np.array([motions[-1].points[name].velocity for name in moving])
         fastest = float(np.abs(arrows).max())
@@ -161,7 +162,6 @@ def _draw(axes: Axes, settings: LinkageSettings, motions: Sequence[LinkageMotion
         feet = np.array([places[name] for name in moving])
         axes.quiver(feet.real, feet.imag, arrows.real, arrows.imag, angles='xy',
                     scale_units='xy', scale=1.0, color=COLOURS[1], width=0.006, zorder=3)
-        axes.text(0.03, 0.99, f'longest arrow {fastest:.3g} m/s', transform=axes.transAxes,
-                  color=COLOURS[1], fontsize=8.5, va='top')
-    axes.set_xlabel('x [m]')
+        label += f'\narrows: velocities, the longest {fastest:.3g} m/s'
+    axes.set_xlabel(label)
     axes.set_ylabel('y [m]')
