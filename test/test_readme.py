@@ -18,16 +18,19 @@ pytestmark = pytest.mark.timeout(30)
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
+PARAMETERS = (ROOT / 'doc' / 'parameters.md').read_text(encoding='utf-8')
 
 
 def test_the_generated_tables_are_up_to_date():
     assert refreshed(README) == README
-    assert set(re.findall(r'<!-- generated: (\w+) -->', README)) == set(BLOCKS)
+    assert refreshed(PARAMETERS) == PARAMETERS
+    assert set(re.findall(r'<!-- generated: (\w+) -->', README + PARAMETERS)) == set(BLOCKS)
 
 
 def test_a_parameter_that_the_tables_lack_would_be_noticed():
     spec = TABLES['master_shaft'][0]
-    assert refreshed(README.replace(f'| `{spec.name}` |', '| `forgotten` |')) == README
+    assert refreshed(
+        PARAMETERS.replace(f'| `{spec.name}` |', '| `forgotten` |')) == PARAMETERS
 
 
 def test_every_link_and_picture_leads_to_a_file():

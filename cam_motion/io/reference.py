@@ -6,10 +6,10 @@
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
 """
-The tables of README, written from the data that the program itself uses.
+The tables of README and doc/parameters.md, from the data that the program itself uses.
 
-``python -m cam_motion.io.reference README.md`` brings a file up to date: each block between
-``<!-- generated: NAME -->`` and ``<!-- end -->`` is written anew.
+``python -m cam_motion.io.reference README.md doc/parameters.md`` brings files up to date: each
+block between ``<!-- generated: NAME -->`` and ``<!-- end -->`` is written anew.
 """
 
 from __future__ import annotations

@@ -162,6 +162,9 @@ def _draw(axes: Axes, settings: LinkageSettings, motions: Sequence[LinkageMotion
         feet = np.array([places[name] for name in moving])
         axes.quiver(feet.real, feet.imag, arrows.real, arrows.imag, angles='xy',
                     scale_units='xy', scale=1.0, color=COLOURS[1], width=0.006, zorder=3)
+        tips = feet + arrows
+        axes.update_datalim(np.column_stack([tips.real, tips.imag]))
+        axes.autoscale_view()
         label += f'\narrows: velocities, the longest {fastest:.3g} m/s'
     axes.set_xlabel(label)
     axes.set_ylabel('y [m]')
