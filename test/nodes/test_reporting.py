@@ -26,8 +26,8 @@ MASTER_KEYS = {
     'speed_cpm', 'set_speed_cpm', 'angle_deg', 'cycles', 'ticks', 'missed_ticks', 'late_ticks',
     'worst_lateness_us', 'clock_restarts'}
 AXIS_KEYS = {
-    'setpoints', 'refused_points', 'points_of_another_shaft', 'missed_ticks', 'position', 'velocity',
-    'acceleration', 'unit', 'shaft_age_s'}
+    'setpoints', 'refused_points', 'points_of_another_shaft', 'missed_ticks', 'shaft_age_s',
+    'position', 'velocity', 'acceleration', 'unit'}
 DRIVE_KEYS = {'states', 'refused_points', 'motor_torque', 'motor_speed_rpm', 'peak_motor_torque'}
 
 
