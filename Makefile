@@ -51,7 +51,7 @@ demo: $(STAMP)  ## run the cutting machine for 10 s; bag, report and pictures go
 	$(BIN)/cam_motion plot config/$(MACHINE).yaml --output out
 
 test: $(STAMP)  ## run all tests (ARGS='test/motion -x' runs those only)
-	$(BIN)/python -m pytest $(or $(ARGS),test)
+	$(BIN)/python -m pytest $(or $(ARGS),-n 2 --dist worksteal test)
 
 bench: $(STAMP)  ## measure speed next to the usual alternatives
 	$(BIN)/python -m benchmarks $(ARGS)
