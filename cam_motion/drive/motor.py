@@ -18,6 +18,8 @@ from cam_motion.units import RPM
 import numpy as np
 from numpy.polynomial import polynomial
 
+_NO_BEND = 1e-12  # share of a below which b does nothing to the torque curve
+
 
 class Motor(Protocol):
     """What a drive needs to know of its motor, whose torque is zero at synchronous speed only."""
@@ -95,7 +97,9 @@ class InductionMotor:
                 'breakdown_slip', self.breakdown_slip, 'must lie between 0 and 1'))
         if not problems:
             slip = polynomial.Polynomial([0.0, 1.0])
-            below = slip + (self.breakdown_slip - slip) ** 2 * (self.a - self.b * slip ** 3)
+            # a b too small to bend the curve would only make the search for roots overflow
+            b = self.b if abs(self.b) > _NO_BEND * self.a else 0.0
+            below = slip + (self.breakdown_slip - slip) ** 2 * (self.a - b * slip ** 3)
             roots = np.asarray(below.roots(), dtype=complex)
             poles = (np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)
             rule = 'the torque curve must be finite from standstill to twice the synchronous speed'

@@ -190,7 +190,8 @@ class RigidDrive:
         """
         rate = self.acceleration(torque, velocity)
         last = velocity + rate * time
-        if velocity == 0.0 or last * velocity > 0.0:
+        # by sign, as a product of small numbers may vanish
+        if velocity == 0.0 or (last != 0.0 and (last > 0.0) is (velocity > 0.0)):
             travel = time * (velocity + 0.5 * rate * time)
             return Move(position + travel, last, travel, 0.0)
         before = -0.5 * velocity * velocity / rate

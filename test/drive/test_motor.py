@@ -156,3 +156,9 @@ def test_a_rated_point_off_the_curve_is_refused(rated_rpm, torque, path, rule):
     problem, = refused.value.problems
     assert problem.path == path
     assert rule in problem.rule
+
+
+@pytest.mark.parametrize('b', [0.0, 5e-324, 1e-300, -1e-300, 1e-20])
+def test_a_constant_too_small_to_matter_is_no_trouble(b):
+    tiny, plain = (InductionMotor(157.08, 27.27, 0.315, 1.587, each, 0.0028) for each in (b, 0.0))
+    assert tiny.torque(150.0) == plain.torque(150.0)

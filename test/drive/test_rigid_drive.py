@@ -143,3 +143,8 @@ def test_a_stop_ends_at_rest_without_swinging_in_velocity(velocity, rate, millis
 def test_setpoints_must_follow_one_another():
     with pytest.raises(ValueError, match='later'):
         SetMotion(Setpoint(5, 0.0), Setpoint(5, 0.0))
+
+
+def test_the_smallest_speed_there_is_goes_on():
+    move = RigidDrive(1.0, 0.0, 0.0, 1.0, False).move(0.0, 5e-324, 0.0, 0.0625)
+    assert move.velocity == 5e-324

@@ -54,7 +54,9 @@ def bag_of(tmp_path):
     return write
 
 
-def test_the_worst_following_error_is_found_though_states_are_missing(bag_of, capsys):
+def test_the_worst_following_error_is_found_though_states_are_missing(
+        bag_of, capsys, monkeypatch):
+    monkeypatch.setenv('COLUMNS', '120')
     path = bag_of({tick: 1e-4 * (tick - 60) for tick in range(0, 100, 3)})
     report = make_report(read_recording(path))
     assert report.drives['feeder_drive'].following_error == pytest.approx(60e-4, rel=1e-9)
