@@ -181,7 +181,7 @@ def build_axis(name: str, given: Values) -> CoupledAxis:
     names = names_in(given, 'cams')
     given, tracks, problems = take_tracks(
         given, axis_parameters.CAM_AXIS, [*names, *names_in(given, 'segments')], of_axis=True)
-    problems += _twice('cams', names)
+    problems += _twice('cams', names) + _taken('cams', names)
     profiles: dict[str, CamProfile] = {}
     couplings: dict[str, Coupling] = {}
     if names:
@@ -228,6 +228,13 @@ def _twice(key: str, names: Iterable[str]) -> list[Problem]:
             for name in dict.fromkeys(names) if names.count(name) > 1]
 
 
+def _taken(key: str, names: Iterable[str]) -> list[Problem]:
+    """Refuse names below which the axis has parameters of its own."""
+    own = {spec.name.partition('.')[0] for spec in axis_parameters.CAM_AXIS if '.' in spec.name}
+    return [Problem(key, name, 'stands for parameters of the axis itself', 'take another name')
+            for name in names if name in own]
+
+
 def _limits(values: Values) -> tuple[Limits, list[Problem]]:
     try:
         return Limits(*(values[f'limits.{name}'] for name in (
@@ -261,6 +268,7 @@ def _build_cam(given: Values) -> tuple[CamProfile, Coupling]:
         Problem('segments', name, 'every segment has a name of its own')
         for name in dict.fromkeys(names) if names.count(name) > 1
     ]
+    problems += _taken('segments', names)
     if not names and values['segments'] == []:
         problems.append(Problem('segments', [], 'a cam needs at least one segment'))
     if values['ratio'] == 0.0:

@@ -13,6 +13,7 @@ import math
 from pathlib import Path
 
 from cam_motion.errors import ConfigurationError
+from cam_motion.io.axis import build_axis
 from cam_motion.io.config import load_machine, parse_sections, read_sections
 from cam_motion.io.plain import to_json
 from cam_motion.io.summary import check_sections
@@ -150,3 +151,9 @@ def test_no_edit_of_a_machine_file_escapes_as_anything_but_problems(edits):
     assert len(data['problems']) == len(check.problems)
     told = [str(problem) for problem in check.problems]
     assert len(told) == len(set(told))
+
+
+@pytest.mark.parametrize('name', ['limits', 'engage', 'change', 'resume', 'disengage'])
+def test_a_segment_cannot_take_the_name_of_parameters_of_its_axis(name):
+    with pytest.raises(ConfigurationError, match=f"segments: '{name}'"):
+        build_axis('axis', {'segments': [name], f'{name}.end_deg': 360.0})
