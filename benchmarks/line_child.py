@@ -47,7 +47,7 @@ def main() -> None:
 
     def note(setpoint: Point) -> None:
         # from the scheduled instant of the tick to the last setpoint handed to DDS
-        due = master._schedule._zero_ns + setpoint.sec * 1_000_000_000 + setpoint.nanosec
+        due = master._ticker.schedule._zero_ns + setpoint.sec * 1_000_000_000 + setpoint.nanosec
         latencies.append(time.monotonic_ns() - due)
 
     nodes[-1].listeners.append(note)
@@ -59,7 +59,7 @@ def main() -> None:
     gc.collect()
     gc.freeze()  # as the runner of the nodes does
     latencies.clear()
-    schedule = master._schedule
+    schedule = master._ticker.schedule
     missed, used, began = schedule.missed, _cpu(), time.monotonic()
     _spin(executor, float(seconds))
     wall = time.monotonic() - began
