@@ -21,10 +21,10 @@ from cam_motion.io.format_parameters import is_of_a_format
 from cam_motion.io.machine import Machine
 from cam_motion.io.parameters import is_of_every_node, REQUIRED
 from cam_motion.runtime.demand import Demand
-from cam_motion.runtime.format_change import check_speed, fixed_plan, shortest_plan
+from cam_motion.runtime.format_change import fixed_plan, shortest_plan
 from cam_motion.runtime.interlock import Verdict
 from cam_motion.runtime.motion_over_angle import Cascade, Motion
-from cam_motion.runtime.planning import next_angle, Plan, TransitionError
+from cam_motion.runtime.planning import check_speed, next_angle, Plan, TransitionError
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.units import DEGREE, RPM, TURN
 

@@ -19,6 +19,7 @@ from cam_motion.runtime.layout import Layout
 from cam_motion.runtime.motion_over_angle import Motion, Standstill
 from cam_motion.runtime.planning import (
     At,
+    check_speed,
     Goal,
     pace_of,
     Plan,
@@ -29,12 +30,10 @@ from cam_motion.runtime.planning import (
 )
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.runtime.transition import Blend
-from cam_motion.units import RPM, TURN
+from cam_motion.units import TURN
 
 _SAME = 1e-9  # positions this close, as a share of what they are, are the same
 _MOST_NESTED = 4  # transitions begun on top of others that still go on
-
-
 _TO_BE_RESET = (FollowerState.HELD, FollowerState.FAULT)
 _AT_REST = (FollowerState.DISENGAGED, *_TO_BE_RESET)
 
@@ -166,6 +165,9 @@ class Follower:
         if self.state is not FollowerState.DISENGAGED:
             if self.plan is not None and self._begun is FollowerState.DISENGAGING:
                 self._cancel()
+                if self.motion != self.layout.motion:
+                    # a change had been waiting when it was told to stand
+                    return self.change(self.layout)
             return self.plan
         return self._join(self.settings.engage, self._engaged_layout)
 
@@ -236,16 +238,12 @@ class Follower:
         shaft = self._shaft
         if self.state in _AT_REST or shaft is None:
             if not dry:
-                self.layout = layout
+                self.layout = layout.anchored_as(self.layout)
                 if self.state not in _AT_REST:
-                    self._set_motion(layout.motion)
+                    self._set_motion(self.layout.motion)
             return None
-        bound, speed = layout.speed_bound(self.settings.limits), abs(shaft.omega)
-        if bound is not None and bound.omega < speed:
-            raise TransitionError(
-                f'the new motion keeps the limits up to {bound.omega / RPM:.4g} cycles/min only '
-                f'({bound.segment}: {bound.quantity}) and the shaft runs at {speed / RPM:.4g}: '
-                'slow down first')
+        bound = layout.speed_bound(self.settings.limits)
+        check_speed(bound, abs(shaft.omega))
         old, sense = self.layout, -1.0 if shaft.omega < 0.0 else 1.0
         return self._begin(lambda start, _: layout.continuing(old, start, sense),
                            self.settings.change, FollowerState.CHANGING, FollowerState.IN_SYNC,
@@ -299,14 +297,14 @@ class Follower:
             Why.
 
         """
+        shaft, self._shaft = self._shaft, None  # when it is heard again it may be anywhere
         if self.state is FollowerState.DISENGAGED:
             return  # it stands because it was told to
         self.reason = reason
         if self.state not in _TO_BE_RESET:
-            self._held_at = 0.0 if self._shaft is None else self._shaft.phi
+            self._held_at = 0.0 if shaft is None else shaft.phi
             self._set_motion(Standstill(self.sample(self._held_at)[0]))
         self.plan, self._watch = None, False
-        self._shaft = None  # when it is heard again it may be anywhere
         self.state = state
 
     # How

@@ -10,7 +10,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import NamedTuple
 
 from cam_motion.motion.limits import SpeedBound
@@ -20,6 +19,7 @@ from cam_motion.runtime.follower_settings import FollowerSettings, FollowerState
 from cam_motion.runtime.layout import Layout
 from cam_motion.runtime.motion_over_angle import Motion
 from cam_motion.runtime.planning import (
+    check_speed,
     next_angle,
     Pace,
     Plan,
@@ -226,7 +226,7 @@ class FormatFollower(Follower):
 
     def _take_over(self, waiting: Scheduled) -> None:
         plan, new = waiting.plan, waiting.new
-        self.layout = replace(new.layout, origin=self.layout.origin, shift=self.layout.shift)
+        self.layout = new.layout.anchored_as(self.layout)
         if plan is not None and isinstance(plan.goal, Layout):
             self.layout = plan.goal
         self.settings = new.settings
@@ -271,30 +271,6 @@ class FormatFollower(Follower):
 
 def _nothing() -> None:
     """Stand in for a callback."""
-
-
-def check_speed(bound: SpeedBound | None, speed: float) -> None:
-    """
-    Check that a new motion keeps its limits at the speed of the shaft.
-
-    Parameters
-    ----------
-    bound : SpeedBound | None
-        The highest speed at which it does.
-    speed : float
-        Speed of the shaft, a magnitude [rad/s].
-
-    Raises
-    ------
-    TransitionError
-        When it does not, with the figures.
-
-    """
-    if bound is not None and bound.omega * (1.0 + 1e-9) < speed:
-        raise TransitionError(
-            f'the new motion keeps the limits up to {bound.omega / RPM:.4g} cycles/min only '
-            f'({bound.segment}: {bound.quantity}) and the shaft runs at {speed / RPM:.4g}: '
-            'slow down first')
 
 
 def fixed_plan(old: Motion, goal: Layout, start: float, span: float, settings: FollowerSettings,

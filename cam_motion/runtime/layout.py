@@ -160,6 +160,23 @@ class Layout:
         strokes = math.ceil((y - self.motion.sample(start)[0]) / stroke - _AHEAD)
         return replace(self, shift=self.shift + strokes * stroke)
 
+    def anchored_as(self, old: Layout) -> Layout:
+        """
+        Anchor a layout where another one is anchored.
+
+        Parameters
+        ----------
+        old : Layout
+            The other one.
+
+        Returns
+        -------
+        Layout
+            This one with its origin and shift.
+
+        """
+        return replace(self, origin=old.origin, shift=old.shift)
+
     def continuing(self, old: Layout, start: float, sense: float) -> Layout:
         """
         Anchor a layout where another one is anchored that it takes over from.
@@ -181,7 +198,7 @@ class Layout:
             gained before.
 
         """
-        new = replace(self, origin=old.origin, shift=old.shift)
+        new = self.anchored_as(old)
         if not (new.accumulates or old.accumulates) or new._strokes == old._strokes:
             return new
         begin = start

@@ -161,6 +161,30 @@ def pace_of(state: ShaftState, bound: SpeedBound | None, ramp: RampLimits) -> Pa
     return Pace(speed, speed or fastest, ramp, sense)
 
 
+def check_speed(bound: SpeedBound | None, speed: float) -> None:
+    """
+    Check that a new motion keeps its limits at the speed of the shaft.
+
+    Parameters
+    ----------
+    bound : SpeedBound | None
+        The highest speed at which it does.
+    speed : float
+        Speed of the shaft, a magnitude [rad/s].
+
+    Raises
+    ------
+    TransitionError
+        When it does not, with the figures.
+
+    """
+    if bound is not None and bound.omega * (1.0 + 1e-9) < speed:
+        raise TransitionError(
+            f'the new motion keeps the limits up to {bound.omega / RPM:.4g} cycles/min only '
+            f'({bound.segment}: {bound.quantity}) and the shaft runs at {speed / RPM:.4g}: '
+            'slow down first')
+
+
 def next_angle(phi: float, angle: float, sense: float) -> float:
     """
     Find when the shaft passes an angle next.

@@ -434,3 +434,46 @@ def test_the_shaft_is_held_back_while_a_transition_needs_it():
         check_step(before, point, follower.settings.limits)
         before = point
     assert follower.speed_bound.omega == pytest.approx(free)
+
+
+def test_a_standing_axis_forgets_a_shaft_that_is_lost():
+    """Disengaged while the shaft is lost, it does not engage with where that was."""
+    follower = make(engaged=False)
+    follower.answer(4.0, 6.0, 0.0)
+    follower.coast()
+    follower.hold(FollowerState.HELD, 'silence')
+    assert follower.state is FollowerState.DISENGAGED
+    with pytest.raises(TransitionError, match='no shaft'):
+        follower.engage()
+
+
+def test_a_change_while_held_keeps_where_the_axis_is_anchored():
+    """An axis engaged relative to its position resumes relative to it, with the new coupling."""
+    follower = make(engaged=False, slave_relative=True)
+    start = 100.0 * DEGREE
+    follower.answer(start, 5.0, 0.0)
+    follower.engage()
+    turn(follower, 5.0, start, start + 2.0 * TURN)
+    anchor = follower.layout.shift
+    assert anchor != 0.0
+    follower.coast()
+    follower.hold(FollowerState.HELD, 'silence')
+    follower.change(layout_of(PRESS, offset=0.01))
+    follower.answer(start, 5.0, 0.0)
+    follower.reset()
+    turn(follower, 5.0, start, start + 2.0 * TURN)
+    y = PRESS.sample(start + 2.5 * TURN)[0] + 0.01 + anchor
+    assert follower.answer(start + 2.5 * TURN, 5.0, 0.0)[0] == pytest.approx(y, abs=1e-12)
+
+
+def test_a_change_that_waits_outlives_a_stop_that_is_called_off():
+    """Told to change, then to stand, then not to, the axis still changes."""
+    later = Timing(At.ANGLE, span=0.5, angle=6.0)
+    follower = make(layout_of(PRESS, SMALL), change=later, disengage=later)
+    turn(follower, 5.0, 0.0, 1.0)
+    follower.change(replace(follower.layout, active=('two',)))
+    follower.disengage()
+    follower.engage()
+    turn(follower, 5.0, 1.0, 3.0 * TURN)
+    assert follower.state is FollowerState.IN_SYNC
+    assert follower.answer(20.0, 5.0, 0.0)[0] == SMALL.sample(20.0)[0]
