@@ -19,7 +19,7 @@ from cam_motion.io.machine import build_drive
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.track_output import TrackOutput
 from cam_motion.nodes.trajectory_output import Effort, TrajectoryOutput
-from cam_motion.runtime.motion_over_angle import Cascade, Motion, Standstill
+from cam_motion.runtime.motion_over_angle import Cascade, Motion
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
 
@@ -40,6 +40,8 @@ class AxisOutputs:
         Node of the axis, as it is being configured.
     axis : CoupledAxis
         The axis.
+    now : Callable[[], Course]
+        Gives what the axis follows, with the dead time made up for, and what it does over that.
     drive : Callable[[], Mapping[str, Any]] | None
         Gives the parameters of the drive that follows the axis; None where none is known.
     source : Callable[[], AxisOutputs] | None
@@ -53,9 +55,10 @@ class AxisOutputs:
 
     """
 
-    def __init__(self, node: ManagedNode, axis: CoupledAxis, drive: DriveValues | None,
-                 source: Callable[[], AxisOutputs] | None) -> None:
+    def __init__(self, node: ManagedNode, axis: CoupledAxis, now: Callable[[], Course],
+                 drive: DriveValues | None, source: Callable[[], AxisOutputs] | None) -> None:
         """Make the topics."""
+        self._now = now
         self._tracks = TrackOutput(node, axis.tracks)
         self._source = source
         values = axis.values
@@ -66,32 +69,24 @@ class AxisOutputs:
                 'trajectory.rate_hz', rate, 'an axis that follows another one knows what that '
                 'will do in the process of the line only',
                 f'start both by the line, or let it follow the {SHAFT}')])
-        self.course: Course = ((0.0, 0.0, 0.0), Standstill(0.0))
         with_effort = drive is not None and values['trajectory.effort']
         self._trajectory = TrajectoryOutput(
             node, rate, values['trajectory.points'], values['trajectory.joint'] or axis.name,
             RampLimits(values['stop_acceleration'], values['stop_jerk']),
             _effort_of(drive()) if with_effort else None) if rate else None
+        self.wanted = bool(axis.tracks) or self._trajectory is not None
+        """Whether there is anything to tell at a tick."""
 
-    def follow(self, followed: tuple[float, float, float], motion: Motion) -> None:
-        """
-        Note what the axis does, before its setpoint reaches those that follow it.
-
-        Parameters
-        ----------
-        followed : tuple[float, float, float]
-            Position, speed and acceleration of what it follows, with the dead time made up for.
-        motion : Motion
-            What the axis does over that position.
-
-        """
+    @property
+    def course(self) -> Course:
+        """Look up what the shaft does, and what the axis does over its angle."""
+        followed, motion = self._now()
         if self._source is None:
-            self.course = followed, motion
-            return
+            return followed, motion
         (phi, omega, alpha), inner = self._source().course
         lead = self._dead_time
-        self.course = ((phi + lead * (omega + 0.5 * lead * alpha), omega + lead * alpha, alpha),
-                       Cascade(motion, inner))
+        return ((phi + lead * (omega + 0.5 * lead * alpha), omega + lead * alpha, alpha),
+                Cascade(motion, inner))
 
     def answer(self, point: Point, setpoint: Point) -> None:
         """

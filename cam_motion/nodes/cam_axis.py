@@ -108,7 +108,8 @@ class CamAxis(ManagedNode):
         self._bound = math.nan  # highest speed of the shaft as published [rad/s]
         self._setpoints = self.make_publisher(JointTrajectoryPoint, '~/setpoint', SETPOINTS)
         self._max_speed = self.make_publisher(Float64, '~/max_speed_cpm', LATCHED)
-        self.outputs = AxisOutputs(self, self.axis, self.drive, self.source)
+        self.outputs = AxisOutputs(
+            self, self.axis, lambda: self._follower.course, self.drive, self.source)
         self._staging = Staging(self, self.axis, self._follower, self._adopt)
         self.make_service(SetBool, '~/engage', self._on_engage)
         self.make_service(Trigger, '~/reset', self._on_reset)
@@ -165,9 +166,9 @@ class CamAxis(ManagedNode):
         follower = self._follower
         position, velocity, acceleration = follower.answer(phi, omega, alpha)
         setpoint = Point(position, velocity, acceleration, sec, nanosec)
-        self.outputs.follow((phi, omega, alpha), follower.motion)
         self._emit(setpoint)
-        self.outputs.answer(point, setpoint)
+        if self.outputs.wanted:
+            self.outputs.answer(point, setpoint)
         if follower.state is not self._told:
             self._tell()
 

@@ -129,14 +129,15 @@ def make_line(**options: Any) -> list[ManagedNode]:
     turning = [drive for drive in drives if drive.kind.TURNS_SHAFT]
     master: MasterShaft | DriveSim = (
         turning[0] if turning else MasterShaft(names['master'], own_process=False, **options))
+    if isinstance(master, MasterShaft):
+        master.sections = lambda: {
+            name: own_values(values_of(node)) for name, node in axes.items()}
     for axis in axes.values():
         source = axes.get(values_of(axis).get('follows', ''), master)
         source.listeners.append(axis.answer)
         if isinstance(source, CamAxis):
             axis.source = partial(getattr, source, 'outputs')
         if isinstance(master, MasterShaft):
-            master.sections = lambda: {
-                name: own_values(values_of(node)) for name, node in axes.items()}
             axis.bound_listeners.append(partial(master.obey, axis.get_name()))
     for drive in drives:
         drive.section = lambda name: own_values(values_of(axes[name])) if name in axes else {}

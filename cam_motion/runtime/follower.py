@@ -112,6 +112,11 @@ class Follower:
         y, slope, bend, _ = self.sample(phi)
         return y, slope * omega, bend * omega * omega + slope * alpha
 
+    @property
+    def course(self) -> tuple[ShaftState, Motion]:
+        """Give the shaft as the axis last heard it, at zero if never, and the motion over it."""
+        return self._shaft or ShaftState(0.0, 0.0, 0.0), self.motion
+
     def _progress(self, phi: float) -> None:
         """Change the state where a shaft point gives reason to."""
         plan, coasting = self.plan, self.state is FollowerState.STOPPING_ON_CURVE
