@@ -9,12 +9,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 import math
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import build_axis, CoupledAxis, Values
+from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.motion.limits import Limits, QUANTITIES, SpeedBound
 from cam_motion.runtime.demand import Demand
 from cam_motion.runtime.motion_over_angle import Cascade, Motion
@@ -23,7 +24,6 @@ from cam_motion.runtime.ramp_room import RampRoom
 from cam_motion.units import DEGREE, rate_text, RPM
 
 _STEADY = RampLimits(0.0, 0.0)
-SHAFT = 'shaft'
 
 
 @dataclass(frozen=True)
@@ -115,19 +115,20 @@ def _cascaded(chain: list[CoupledAxis | None]) -> CoupledAxis | None:
     return CascadedAxis(**own, motion=motion, period=links[-1].layout.period)
 
 
-def ramp_room(sections: Mapping[str, Values]) -> RampRoom:
+def axes_of(sections: Mapping[str, Values]) -> dict[str, CoupledAxis]:
     """
-    Find the room that the limits of axes leave for the acceleration of the shaft.
+    Build the axes of a line as far as they can be used.
 
     Parameters
     ----------
     sections : Mapping[str, Mapping[str, Any]]
-        Parameters of the axes, by name; what cannot be used is left out, its node says why.
+        Parameters of the axes, by name.
 
     Returns
     -------
-    RampRoom
-        The room.
+    dict[str, CoupledAxis]
+        The axes, those in cascade joined to what they follow; what cannot be used is left out,
+        its own node says why.
 
     """
     axes: dict[str, CoupledAxis | None] = {}
@@ -136,11 +137,28 @@ def ramp_room(sections: Mapping[str, Values]) -> RampRoom:
             axes[name] = build_axis(name, section)
         except ConfigurationError:
             axes[name] = None
-    found = in_cascade(axes, []).values()
+    found = in_cascade(axes, [])
+    return {name: axis for name, axis in found.items() if axis is not None}
+
+
+def ramp_room(axes: Iterable[CoupledAxis]) -> RampRoom:
+    """
+    Find the room that the limits of axes leave for the acceleration of the shaft.
+
+    Parameters
+    ----------
+    axes : Iterable[CoupledAxis]
+        The axes.
+
+    Returns
+    -------
+    RampRoom
+        The room.
+
+    """
     return RampRoom(
         (axis.motion, axis.period, axis.limits) if isinstance(axis, CascadedAxis)
-        else (axis.layout.motion, axis.layout.period, axis.limits)
-        for axis in found if axis is not None)
+        else (axis.layout.motion, axis.layout.period, axis.limits) for axis in axes)
 
 
 def speed_problems(axis: CoupledAxis, omega: float) -> list[Problem]:

@@ -12,6 +12,9 @@ from __future__ import annotations
 from cam_motion.io.parameters import AUTOSTART, ParameterSpec, REQUIRED, TRACKS
 from cam_motion.io.track_parameters import TRAJECTORY
 
+SHAFT = 'shaft'
+"""What an axis follows that follows no other axis: the name of the shaft's topic."""
+
 CAM = (
     ParameterSpec('cycle', 'string', 'return',
                   'Whether the cam comes back in each cycle or accumulates its stroke.',
@@ -57,7 +60,7 @@ def _timing(name: str, meaning: str) -> tuple[ParameterSpec, ...]:
 
 CAM_AXIS = (
     ParameterSpec('unit', 'string', 'm', 'Unit of the position.'),
-    ParameterSpec('follows', 'string', 'shaft',
+    ParameterSpec('follows', 'string', SHAFT,
                   'What the axis follows: the shaft, or the setpoints of the axis of that name.'),
     *CAM,
     ParameterSpec('cams', 'string_list', [],

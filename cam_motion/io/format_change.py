@@ -16,7 +16,8 @@ from typing import Any
 
 from cam_motion.errors import CamMotionError, ConfigurationError, Problem
 from cam_motion.io.axis import axis_table, build_axis, CoupledAxis, Values
-from cam_motion.io.axis_limits import CascadedAxis, SHAFT
+from cam_motion.io.axis_limits import CascadedAxis
+from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.format_parameters import is_of_a_format
 from cam_motion.io.machine import Machine
 from cam_motion.io.parameters import is_of_every_node, REQUIRED

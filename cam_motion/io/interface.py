@@ -54,7 +54,8 @@ INTERFACE = (
     Endpoint('cam_axis', 'publishes', '~/setpoint', _POINT,
              'one per shaft point: [y], [ẏ], [ÿ]; time_from_start is copied'),
     Endpoint('cam_axis', 'publishes', '~/max_speed_cpm', 'std_msgs/msg/Float64',
-             'latched: the highest shaft speed that its limits allow now; inf: no limit'),
+             'latched: the highest shaft speed that its limits allow now; inf: no limit, or the '
+             'axis follows another one'),
     Endpoint('cam_axis', 'subscribes', 'format_change', 'std_msgs/msg/Float64',
              'shaft angle [rad], never wrapped, from which on every axis with a staged format '
              'goes over to it; NaN revokes'),

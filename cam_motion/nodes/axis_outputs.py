@@ -14,7 +14,7 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import CoupledAxis
-from cam_motion.io.axis_limits import SHAFT
+from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.machine import build_drive
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.track_output import TrackOutput

@@ -17,9 +17,10 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.axis import axis_table, build_axis, CoupledAxis
-from cam_motion.io.axis_parameters import is_coupling
+from cam_motion.io.axis_parameters import is_coupling, SHAFT
 from cam_motion.io.format_parameters import STAGED
 from cam_motion.io.parameters import ParameterSpec
+from cam_motion.motion.limits import SpeedBound
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.axis_outputs import AxisOutputs, DriveValues
 from cam_motion.nodes.managed_node import ManagedNode
@@ -39,8 +40,6 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectoryPoint
-
-SHAFT = 'shaft'
 
 Listener = Callable[[Point], None]
 
@@ -182,13 +181,18 @@ class CamAxis(ManagedNode):
         """Publish the state, and the highest speed of the shaft if it has changed."""
         self._told = self._follower.state
         self.set_state(self._told.value)
-        bound = self._follower.speed_bound
+        bound = self._speed_bound
         omega = math.inf if bound is None else bound.omega
         if omega != self._bound:
             self._bound = omega
             self._max_speed.publish(Float64(data=omega / RPM))
             for listener in self.bound_listeners:
                 listener(omega)
+
+    @property
+    def _speed_bound(self) -> SpeedBound | None:
+        """Give the bound of the shaft; an axis that follows another one knows none."""
+        return self._follower.speed_bound if self.axis.values['follows'] == SHAFT else None
 
     def _adopt(self, axis: CoupledAxis | None) -> None:
         """Be another axis from now on, if one is given, and say what that allows."""
@@ -330,7 +334,7 @@ class CamAxis(ManagedNode):
             values |= {'position': last.position, 'velocity': last.velocity,
                        'acceleration': last.acceleration, 'unit': self.axis.unit,
                        'shaft_age_s': shaft.age}
-        bound = follower.speed_bound
+        bound = self._speed_bound
         if bound is not None:
             values |= {'max_speed_cpm': bound.omega / RPM,
                        'held_back_by': f'{bound.segment}: {bound.quantity}'}

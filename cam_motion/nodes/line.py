@@ -137,7 +137,7 @@ def make_line(**options: Any) -> list[ManagedNode]:
         source.listeners.append(axis.answer)
         if isinstance(source, CamAxis):
             axis.source = partial(getattr, source, 'outputs')
-        if isinstance(master, MasterShaft):
+        elif isinstance(master, MasterShaft):
             axis.bound_listeners.append(partial(master.obey, axis.get_name()))
     for drive in drives:
         drive.section = lambda name: own_values(values_of(axes[name])) if name in axes else {}

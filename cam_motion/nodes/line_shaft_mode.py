@@ -16,6 +16,7 @@ from cam_motion.drive.live_shaft import LiveShaft, LiveState
 from cam_motion.drive.shaft_torque import Command
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import build_axis
+from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.cam_drive_config import build_cam_drive, cam_on_shaft
 from cam_motion.io.cam_drive_parameters import cam_drive_table
 from cam_motion.io.parameters import ParameterSpec
@@ -25,7 +26,7 @@ from cam_motion.nodes.drive_mode import DriveMode
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.parameters import section_of
 from cam_motion.nodes.qos import SETPOINTS
-from cam_motion.nodes.shaft_ticker import SHAFT, ShaftTicker
+from cam_motion.nodes.shaft_ticker import ShaftTicker
 from cam_motion.nodes.wire import JointStateCodec
 from cam_motion.runtime.ticks import NANOSECONDS
 from cam_motion.units import RPM, TURN

@@ -17,7 +17,8 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.axis import names_in
-from cam_motion.io.axis_limits import ramp_room
+from cam_motion.io.axis_limits import axes_of, CascadedAxis, ramp_room
+from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.machine import build_master
 from cam_motion.io.parameters import MASTER_SHAFT, ParameterSpec
 from cam_motion.io.tracks import track_table
@@ -27,7 +28,7 @@ from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.parameters import section_of, values_of
 from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from cam_motion.nodes.runner import run
-from cam_motion.nodes.shaft_ticker import Listener, SHAFT, ShaftTicker
+from cam_motion.nodes.shaft_ticker import Listener, ShaftTicker
 from cam_motion.runtime.shaft import Shaft, ShaftError, ShaftMode
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.units import RPM
@@ -111,9 +112,15 @@ class MasterShaft(ManagedNode):
         self.make_subscription(
             Float64, '~/speed_cpm', lambda message: self._set_speed(message.data), SETPOINTS)
         sections = self.sections()
-        axes = checked['obey'] or list(sections)
-        self._shaft.room = ramp_room({name: sections[name] for name in axes if name in sections})
-        for axis in axes if self._own_process else ():
+        known, wanted = axes_of(sections), checked['obey'] or list(sections)
+        self._shaft.room = ramp_room(known[name] for name in wanted if name in known)
+        for name in wanted:
+            if isinstance(axis := known.get(name), CascadedAxis) and axis.speed_bound is not None:
+                # it knows what it follows only; what that means for the shaft is known here
+                self.obey(name, axis.speed_bound.omega)
+        for axis in wanted if self._own_process else ():
+            if isinstance(known.get(axis), CascadedAxis):
+                continue
             self.make_subscription(Float64, f'{axis}/max_speed_cpm', partial(
                 lambda message, axis: self.obey(axis, message.data * RPM), axis=axis), LATCHED)
         self.make_service(SetBool, '~/run', self._on_run)

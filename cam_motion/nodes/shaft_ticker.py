@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.tracks import TrackSettings
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.qos import SETPOINTS
@@ -24,7 +25,6 @@ from rclpy.timer import Timer
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-SHAFT = 'shaft'
 _SIM_TIME_CATCH_UP = 1.0  # /clock may come in coarse steps: its ticks are all carried out [s]
 
 Listener = Callable[[Point], None]

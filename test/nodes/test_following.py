@@ -327,6 +327,32 @@ def test_the_master_obeys_what_the_axes_allow(world):
     assert max(abs(point.acceleration) for point in setpoints) <= 5.0
 
 
+def test_the_master_keeps_the_limits_of_an_axis_that_follows_another(world):
+    """What such an axis allows is a speed of what it follows: the shaft is held accordingly."""
+    leader = {'cycle': 'accumulate', 'segments': ['gear'], 'unit': 'rad',
+              'gear.law': 'constant_velocity', 'gear.end_deg': 360.0, 'gear.lift': 3.0 * TURN}
+    follower = {**PRESS, 'follows': 'leader', 'limits.acceleration': 5.0}
+    nodes = [world.make(CamAxis, leader, name='leader'),
+             world.make(CamAxis, follower, name='cam_axis')]
+    heard = world.listen(Float64, 'cam_axis/max_speed_cpm', node_latched())
+    master = world.make(MasterShaft, {
+        'speed_cpm': 300.0, 'obey': ['cam_axis'], 'start_delay': 0.5, 'rate_hz': 200.0})
+    master.sections = lambda: {'leader': leader, 'cam_axis': follower}
+    shaft, setpoints = world.points('shaft'), world.points('cam_axis/setpoint')
+    for node in (*nodes, master):
+        node.trigger_configure()
+        node.trigger_activate()
+    alone = build_axis('axis', {**PRESS, 'limits.acceleration': 5.0}).speed_bound.omega
+    assert world.spin_until(lambda: shaft and shaft[-1].velocity > 1.0
+                            and shaft[-1].acceleration == 0.0)
+    # three turns of the axis per turn of the shaft
+    assert shaft[-1].velocity == pytest.approx(alone / 3.0, rel=0.01)
+    world.spin_for(1.0)
+    assert max(abs(point.acceleration) for point in setpoints) <= 5.0
+    assert heard[-1].data == math.inf
+    assert master.health()[1]['held_back_by'] == 'cam_axis'
+
+
 def node_latched():
     """Give the quality of service of latched topics."""
     from cam_motion.nodes.qos import LATCHED

@@ -236,7 +236,8 @@ def test_drive_and_axis_as_processes_come_to_rest_together(world, start, press_f
     processes = [start('cam_axis', *common, '-r', '__node:=follower'),
                  start('drive_sim', *common, '-r', '__node:=press_drive')]
     said = lambda: ''.join(each.said for each in processes)  # noqa: E731
-    assert world.spin_until(lambda: shaft and shaft[-1].velocity > 40.0, START), said()
+    assert world.spin_until(
+        lambda: setpoints and shaft and shaft[-1].velocity > 40.0, START), said()
     for process in processes:
         process.signal(signal.SIGINT)
     assert world.spin_until(lambda: not any(p.running for p in processes)), said()
