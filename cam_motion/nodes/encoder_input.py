@@ -60,7 +60,6 @@ class EncoderInput:
         self._dead_time = values['encoder.dead_time']
         self._timeout = values['encoder.timeout']
         self._limits = RampLimits(values['quick_stop_acceleration'], values['quick_stop_jerk'])
-        self._step = 1.0 / values['rate_hz']
         self.samples = self.refused = 0
         self.reset()
         node.make_subscription(JointState, values['encoder.topic'], self._on_sample,
@@ -72,6 +71,7 @@ class EncoderInput:
         self._smooth: SmoothShaft | None = None
         self._ramp: ShaftMotion | None = None
         self._heard = 0
+        self._last = 0.0  # time of the last tick [s]
         self.state = ShaftState(0.0, 0.0, 0.0)
         """The shaft at the last tick."""
         self.text, self.reason = 'waiting', ''
@@ -117,15 +117,17 @@ class EncoderInput:
         if t - self._filter.time > self._timeout:
             self._node.get_logger().error(
                 f'the encoder has been silent for {t - self._filter.time:.3g} s: stopping')
-            self.release(t - self._step, 'the encoder has fallen silent')
+            self.release(self._last, 'the encoder has fallen silent')
             return self.tick(t)
         target = self._filter.at(t + self._dead_time)
         if self._smooth is None:
             self._smooth = SmoothShaft(2.0 * self._bandwidth)
             self._smooth.state = target._replace(alpha=0.0)
             self.text = 'following'
-        else:
-            self._smooth.follow(target, self._step)
+        elif t > self._last:
+            # ticks may have been missed: what counts is the time since the last one
+            self._smooth.follow(target, t - self._last)
+        self._last = t
         self.state = self._smooth.state
         return self.state
 
