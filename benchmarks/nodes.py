@@ -38,12 +38,14 @@ def node_rows(seconds: float) -> list[Row]:
 
     """
     ours = _run('line_child', 'events', 'calls', str(_AXES), str(_RATE_HZ), str(seconds))
+    wake = _run('wake_child', 'events', str(_RATE_HZ), str(seconds))
     same = _run('line_child', 'default', 'calls', str(_AXES), str(_RATE_HZ), str(seconds))
     topics = _run('line_child', 'default', 'topics', '1', '500.0', str(seconds))
     mine, bare = (_run('axis_child', kind) for kind in ('axis', 'bare'))
     return [
         Row(f'line: shaft + {_AXES} axes at {_RATE_HZ:g} Hz, one process', _line_text(ours),
-            f'{_line_text(same)} (the same on the default executor)',
+            f'{_line_text(same)} (the same on the default executor); a bare loop at '
+            f'{_RATE_HZ:g} Hz wakes up {wake["p99_ms"]:.2f} ms late (p99)',
             f'{same["cpu_pct"] / ours["cpu_pct"]:.1f} × less CPU', _GOAL),
         Row('beside it: shaft + 1 axis at 500 Hz over topics', '–',
             f'{_line_text(topics)} (default executor)', '–', '–'),
@@ -54,7 +56,8 @@ def node_rows(seconds: float) -> list[Row]:
 
 
 def _line_text(result: dict[str, float]) -> str:
-    return (f'{result["cpu_pct"]:.0f} % of a core, p99 {result["p99_ms"]:.2f} ms, '
+    return (f'{result["cpu_pct"]:.0f} % of a core; p99 {result["begun_p99_ms"]:.2f} ms after the '
+            f'shaft\'s point, {result["due_p99_ms"]:.2f} ms after its scheduled instant; '
             f'{result["missed"]:.0f} of {result["ticks"] + result["missed"]:.0f} ticks lost')
 
 

@@ -7,7 +7,7 @@
 # language governing permissions and limitations under the License.
 """One line of the result."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import NamedTuple
 
@@ -45,3 +45,8 @@ def best_of(work: Callable[[], object], repeats: int = 7) -> float:
         work()
         times.append(perf_counter() - start)
     return min(times)
+
+
+def percentile_99(values: Sequence[int]) -> int:
+    """Give the value that 99 % of them do not exceed."""
+    return sorted(values)[int(0.99 * len(values))]

@@ -57,10 +57,10 @@ INTERFACE = (
              'latched: the highest shaft speed that its limits allow now; inf: no limit, or the '
              'axis follows another one'),
     Endpoint('cam_axis', 'subscribes', 'format_change', 'std_msgs/msg/Float64',
-             'shaft angle [rad], never wrapped, from which on every axis with a staged format '
-             'goes over to it; NaN revokes'),
+             'shaft angle [rad], never wrapped: told once, every axis with a staged format answers '
+             'whether it is ready; told again, it goes over there; NaN revokes'),
     Endpoint('cam_axis', 'publishes', '~/format_change', 'std_msgs/msg/Float64',
-             'latched: the angle at which it will; NaN: nothing is scheduled'),
+             'latched: the angle for which the axis is ready; NaN: none'),
     Endpoint('cam_axis', 'serves', '~/engage', 'std_srvs/srv/SetBool',
              'true: onto the curve; false: to standstill; answers with the plan and its peaks'),
     Endpoint('cam_axis', 'serves', '~/reset', 'std_srvs/srv/Trigger',

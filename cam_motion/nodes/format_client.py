@@ -36,7 +36,7 @@ FOUND_WITHIN = 10.0
 _ANSWER_WITHIN = 5.0  # time for a node to answer [s]
 _LOOKED_AT_WITHIN = 20.0  # time for an axis to look at a format [s]
 _LOOK_AGAIN = 0.05
-_REVOKE_WITHIN = 0.5  # time left to call a change off that not all axes have confirmed [s]
+_IN_TIME = 0.5  # how long before the change the last word must be given [s]
 _SETTLE = 0.5  # time for axes that nobody expects to be found [s]
 _SILENT = 'does not answer'
 _STANDING = ('disengaged', 'held', 'fault')
@@ -268,7 +268,7 @@ class FormatClient:
 
     def take_over(self, plan: FormatPlan) -> float:
         """
-        Tell all axes at which shaft angle to change, and make sure that all of them have heard.
+        Ask all axes whether they are ready for a shaft angle, and tell them to change there.
 
         Parameters
         ----------
@@ -283,7 +283,7 @@ class FormatClient:
         Raises
         ------
         FormatError
-            When an axis does not confirm in time; the change is to be revoked then.
+            When an axis does not answer in time; no axis changes then.
 
         """
         if not self._until(lambda: self._listening(plan), _ANSWER_WITHIN):
@@ -291,13 +291,26 @@ class FormatClient:
         shaft = self.shaft()
         start = plan.start(shaft.position, shaft.velocity)
         self._orders.publish(Float64(data=start))
-        left = abs(start - shaft.position) / max(abs(shaft.velocity), plan.speed, 0.1)
-        if self._until(lambda: all(self._scheduled.get(axis) == start for axis in plan.axes),
-                       min(left - _REVOKE_WITHIN, _ANSWER_WITHIN)):
-            return start
-        silent = [axis for axis in plan.axes if self._scheduled.get(axis) != start]
-        raise FormatError(f'{", ".join(silent)} did not confirm in time: the change is called '
-                          'off, nothing has changed')
+        self._until(lambda: not self._silent(plan, start) or self._left(plan, start) < _IN_TIME,
+                    _ANSWER_WITHIN)
+        if silent := self._silent(plan, start):
+            raise FormatError(f'{", ".join(silent)} did not answer in time: the change is called '
+                              'off, nothing has changed')
+        if self._left(plan, start) < _IN_TIME:
+            raise FormatError('the axes answered too late for the angle: the change is called '
+                              'off, nothing has changed')
+        self._orders.publish(Float64(data=start))
+        return start
+
+    def _silent(self, plan: FormatPlan, start: float) -> list[str]:
+        return [axis for axis in plan.axes if self._scheduled.get(axis) != start]
+
+    def _left(self, plan: FormatPlan, start: float) -> float:
+        """Time until the shaft is there, by the newest point heard of it [s]."""
+        if self._last is None:
+            return math.inf
+        speed = max(abs(self._last.velocity), plan.speed, 0.1)
+        return plan.sense * (start - self._last.position) / speed
 
     def revoke(self, plan: FormatPlan) -> None:
         """

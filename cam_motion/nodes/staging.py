@@ -86,6 +86,10 @@ class Staging:
     """
     The change of format of one axis.
 
+    An angle told once is a question: the axis answers it by publishing the same. The same angle
+    told again is the order. Whoever asks gives it when all axes have answered, so that an axis
+    that hangs, or the death of the one who asks, leaves every axis in the format that it has.
+
     Parameters
     ----------
     node : ManagedNode
@@ -112,6 +116,7 @@ class Staging:
                 'staged', text, 'a format is staged while the axis runs', 'leave it out')])
         self._node, self._axis, self._follower, self._adopt = node, axis, follower, adopt
         self._staged: tuple[CoupledAxis, Mapping[str, Any], Format] | None = None
+        self._promised = math.nan  # shaft angle for which the axis waits to be told once more
         self._timer: Timer | None = None
         self._asked: tuple[Any, ...] = ()  # what is being looked at in the background
         self._answer: Future[tuple[CoupledAxis, dict[str, Any]]] | None = None
@@ -120,9 +125,9 @@ class Staging:
         node.make_subscription(Float64, TAKE_OVER, self._on_take_over, SETPOINTS)
 
     def tell(self) -> None:
-        """Publish at which shaft angle the axis will take a format over."""
+        """Publish at which shaft angle the axis will take a format over, or is ready to."""
         waiting = self._follower.scheduled
-        start = math.nan
+        start = self._promised
         if waiting is not None:
             start = waiting.start if waiting.plan is None else waiting.plan.blend.start
         self._told.publish(Float64(data=start))
@@ -165,6 +170,7 @@ class Staging:
         values = {**values_of(self._node), **changes}
         if not values['staged']:
             self._staged = None
+            self._withdraw()
             return ''
         if not self._node.active:
             return 'the node is not active'
@@ -206,10 +212,16 @@ class Staging:
                 self._adopt(None)
             if self._staged is not None and self._timer is None:
                 self._staged = None
+                self._withdraw()
                 self._write(own_values(values_of(self._node)))
             return
         if self._staged is None or self._follower.scheduled is not None:
             return
+        if self._promised != start:
+            self._promised = start
+            self.tell()
+            return
+        self._promised = math.nan
         plan = self._follower.schedule(self._staged[2], start)
         if plan is not None and plan.blend.start != start:
             self._node.get_logger().error(
@@ -218,6 +230,12 @@ class Staging:
                 'arrived: it begins at once')
         self.tell()
         self._adopt(None)
+
+    def _withdraw(self) -> None:
+        """Promise nothing any more."""
+        if math.isfinite(self._promised):
+            self._promised = math.nan
+            self.tell()
 
     def _on_taken(self) -> None:
         """Note that the format is in force; the rest can wait until the shaft is answered."""

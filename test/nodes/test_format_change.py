@@ -83,6 +83,11 @@ class Turned:
             assert self.world.spin_until(
                 lambda: all(len(each) >= count for each in self.setpoints.values()))
 
+    def order(self, angle):
+        """Ask and tell in one breath; every axis hears both."""
+        for _ in range(2):
+            self.orders.publish(Float64(data=angle))
+
     def until(self, condition, most=2500):
         for _ in range(most):
             if condition():
@@ -128,7 +133,7 @@ def test_all_axes_change_at_the_same_angle_and_their_parameters_tell_the_truth(m
         assert result.successful, result.reason
     before = {axis: parameters_of(node) for axis, node in machine.nodes.items()}
     start = machine.angles[-1] // TURN * TURN + TURN + 270.0 * DEGREE
-    machine.orders.publish(Float64(data=start))
+    machine.order(start)
     assert machine.world.spin_until(
         lambda: all(each and each[-1].data == start for each in told.values()))
     machine.until(lambda: machine.states != {'in_sync'})
@@ -163,7 +168,7 @@ def test_a_format_may_have_other_segments_and_cams(machine, formats):
     for given in (one, two, formats[0]['press']):
         result = machine.stage('press', given)
         assert result.successful, result.reason
-        machine.orders.publish(Float64(data=machine.angles[-1] + 1.0))
+        machine.order(machine.angles[-1] + 1.0)
         machine.until(lambda: node.state_text == 'changing')
         machine.until(lambda: node.state_text == 'in_sync')
         machine.turn(2)
@@ -192,7 +197,7 @@ def test_what_an_axis_refuses_it_says_and_nothing_changes(machine, formats):
         assert 'staged' in machine.put('press', staged=text).reason
     mixed = machine.put('press', staged='', scale=0.5)
     assert not mixed.successful and 'together' in mixed.reason
-    machine.orders.publish(Float64(data=machine.angles[-1] + 1.0))
+    machine.order(machine.angles[-1] + 1.0)
     machine.turn(500)
     assert machine.states == {'in_sync'}
     assert (parameters_of(node), node._follower.speed_bound) == (before, bound)
@@ -217,7 +222,7 @@ def test_revoked_before_the_angle_no_axis_changes(machine, formats):
     told = {axis: machine.world.listen(Float64, f'{axis}/format_change') for axis in AXES}
     for axis in AXES:
         assert machine.stage(axis, formats[1][axis]).successful
-    machine.orders.publish(Float64(data=machine.angles[-1] + 2.0))
+    machine.order(machine.angles[-1] + 2.0)
     assert machine.world.spin_until(lambda: all(
         each and math.isfinite(each[-1].data) for each in told.values()))
     assert 'scheduled' in machine.put('press', staged='').reason
@@ -228,6 +233,32 @@ def test_revoked_before_the_angle_no_axis_changes(machine, formats):
     assert machine.states == {'in_sync'}
     assert {axis: parameters_of(node) for axis, node in machine.nodes.items()} == before
     assert all(node.get_parameter('staged').value == '' for node in machine.nodes.values())
+    machine.check_smooth()
+
+
+def test_an_angle_asked_for_and_never_ordered_passes_without_a_change(machine, formats):
+    machine.turn(100)
+    before = {axis: parameters_of(node) for axis, node in machine.nodes.items()}
+    told = {axis: machine.world.listen(Float64, f'{axis}/format_change') for axis in AXES}
+    for axis in AXES:
+        assert machine.stage(axis, formats[1][axis]).successful
+    start = machine.angles[-1] + 2.0
+    machine.orders.publish(Float64(data=start))
+    assert machine.world.spin_until(lambda: all(
+        each and each[-1].data == start for each in told.values()))
+    machine.turn(600)
+    assert machine.angles[-1] > start + 1.0 and machine.states == {'in_sync'}
+    assert machine.put('press', staged='').successful
+    assert machine.world.spin_until(lambda: math.isnan(told['press'][-1].data))
+    machine.orders.publish(Float64(data=start + 20.0))  # another angle is another question
+    assert machine.world.spin_until(lambda: all(
+        told[axis][-1].data == start + 20.0 for axis in AXES if axis != 'press'))
+    machine.turn(100)
+    assert machine.states == {'in_sync'} and math.isnan(told['press'][-1].data)
+    machine.orders.publish(Float64(data=math.nan))
+    assert machine.world.spin_until(lambda: all(
+        math.isnan(each[-1].data) for each in told.values()))
+    assert {axis: parameters_of(node) for axis, node in machine.nodes.items()} == before
     machine.check_smooth()
 
 
@@ -317,6 +348,18 @@ def test_one_process_that_refuses_keeps_all_from_changing(world, line, machine_f
     check_unchanged(points, states, formats[0], AXES)
 
 
+def test_one_who_asks_and_dies_leaves_all_as_they_were(world, line, machine_file, formats):
+    points, states, _ = line
+    with FormatClient() as client:
+        plan = planned(client, machine_file)
+        client.stage(plan)
+        start = plan.start(client.shaft().position, plan.speed)
+        client._orders.publish(Float64(data=start))
+        assert client._until(lambda: not client._silent(plan, start), 20.0)
+    assert world.spin_until(lambda: points['shaft'][-1].position > start + plan.span, 60.0)
+    check_unchanged(points, states, formats[0], AXES)
+
+
 def test_an_axis_that_hangs_after_it_has_agreed_keeps_the_others_from_changing(
         world, line, machine_file, formats):
     points, states, processes = line
@@ -325,7 +368,7 @@ def test_an_axis_that_hangs_after_it_has_agreed_keeps_the_others_from_changing(
         plan = planned(client, machine_file)
         client.stage(plan)
         processes['knife'].signal(signal.SIGSTOP)
-        with pytest.raises(FormatError, match='knife did not confirm in time'):
+        with pytest.raises(FormatError, match='knife did not answer in time'):
             client.take_over(plan)
         client.revoke(plan)
         world.spin_for(1.0)
