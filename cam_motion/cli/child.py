@@ -22,6 +22,9 @@ import threading
 
 from cam_motion.errors import CamMotionError
 
+START_WITHIN = 20.0
+"""Time a node may take from its start to its first message [s]."""
+
 STOP_WITHIN = 10.0
 """Time a node has to come to rest before it is killed [s]."""
 

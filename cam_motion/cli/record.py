@@ -10,14 +10,17 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from time import monotonic
 from typing import Any
 
-from cam_motion.cli.child import recorder, require_ros, stop_signals
+from cam_motion.cli.child import recorder, require_ros, START_WITHIN, stop_signals
 from cam_motion.cli.options import add_config, add_json, check_new_bag, seconds
 from cam_motion.cli.terminal import print_json
 from cam_motion.io.config import load_machine
+
+_LOOK_AGAIN = 0.05
 
 
 def add_to(verbs: Any) -> None:
@@ -37,7 +40,7 @@ def add_to(verbs: Any) -> None:
     parser.add_argument('-o', '--output', metavar='DIR', type=Path, required=True,
                         help='directory of the bag, which must not exist')
     parser.add_argument('--seconds', type=seconds, metavar='S',
-                        help='stop after this time (default: on Ctrl-C)')
+                        help='stop after so much has been recorded (default: on Ctrl-C)')
     parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
                         help='storage of the bag (default: mcap)')
     add_json(parser, 'a final summary')
@@ -71,14 +74,17 @@ def run(arguments: argparse.Namespace) -> int:
     require_ros()
     with stop_signals() as asked:
         child = recorder(arguments.config, arguments.output, arguments.storage)
-        began = monotonic()
-        end = None if arguments.seconds is None else began + arguments.seconds
-        while not child.ended and (end is None or monotonic() < end):
-            if asked.wait(0.1):
+        length = math.inf if arguments.seconds is None else arguments.seconds
+        began, begins = math.inf, monotonic() + START_WITHIN
+        while not child.ended and not asked.wait(_LOOK_AGAIN):
+            now = monotonic()
+            if now > begins or (arguments.output / 'metadata.yaml').exists():
+                began = min(began, now)
+            if now >= began + length:
                 break
         child.ask_to_stop()
         code = child.end()
-    lasted = monotonic() - began
+    lasted = max(0.0, monotonic() - began)
     if arguments.json:
         print_json({
             'exit_code': code, 'seconds': round(lasted, 3), 'bag': str(arguments.output)})

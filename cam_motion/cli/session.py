@@ -15,15 +15,13 @@ from threading import Event
 from time import monotonic, sleep
 from typing import Any
 
-from cam_motion.cli.child import Child, recorder, STOP_WITHIN
+from cam_motion.cli.child import Child, recorder, START_WITHIN, STOP_WITHIN
 from cam_motion.cli.live import Display, REFRESH
 from cam_motion.cli.watch import LineWatch, Snapshot
 from cam_motion.errors import CamMotionError
 from cam_motion.io.machine import Machine
 import yaml
 
-# How long a process may take from its start to its first message [s].
-_START_WITHIN = 20.0
 # How long the shaft may be kept waiting until the bag receives every stream [s].
 _HEARD_WITHIN = 10.0
 # Between the end of the line and that of the recorder: what is on its way arrives [s].
@@ -93,14 +91,14 @@ class Session:
                 self._watch.run_shaft()
 
     def _await_recorder(self, child: Child) -> None:
-        deadline = monotonic() + _START_WITHIN
+        deadline = monotonic() + START_WITHIN
         while self._watch.recorder_state != 'recording':
             if child.ended:
                 raise CamMotionError(f'the recorder ended with exit code {child.code} before it '
                                      'began to record')
             if monotonic() > deadline:
                 raise CamMotionError(
-                    f'the recorder has not begun to record within {_START_WITHIN:g} s')
+                    f'the recorder has not begun to record within {START_WITHIN:g} s')
             if self._asked.wait(0.05):
                 return
 
@@ -110,8 +108,9 @@ class Session:
         wanted = {
             'shaft', *(f'{axis}/setpoint' for axis in machine.diagram.axes),
             *(f'{drive}/drive_state' for drive in machine.drive_names),
+            *(f'{linkage}/joint_states' for linkage in machine.linkages),
         }
-        deadline = monotonic() + _START_WITHIN
+        deadline = monotonic() + START_WITHIN
         while not (line.ended or self._recorder_lost() or monotonic() > deadline):
             heard = _recorded_topics(bag)
             if wanted <= heard:
@@ -129,7 +128,7 @@ class Session:
             return
         self._began = monotonic()
         limit = self._arguments.seconds
-        end = None if limit is None else self._began + _START_WITHIN + limit
+        end = None if limit is None else self._began + START_WITHIN + limit
         heard = False
         while not (self._asked.is_set() or self._line.ended or self._recorder_lost()):
             self._look()

@@ -79,3 +79,27 @@ def speed_ramp(omega: float, alpha: float, target: float, limits: RampLimits) ->
         RampStep(peak / jerk, -direction * jerk),
     ]
     return [step for step in steps if step.duration > 0.0]
+
+
+def leads_to(omega: float, alpha: float, target: float, limits: RampLimits) -> bool:
+    """
+    Tell whether a speed can be reached without taking the acceleration under way back first.
+
+    Parameters
+    ----------
+    omega, alpha : float
+        Speed [rad/s] and acceleration [rad/s²] now.
+    target : float
+        Speed to come to [rad/s].
+    limits : RampLimits
+        Limits on acceleration and jerk of the way there.
+
+    Returns
+    -------
+    bool
+        Whether the acceleration is within the limits, and points at the target and not beyond.
+
+    """
+    return abs(alpha) <= limits.acceleration and (
+        0.0 <= 0.5 * alpha * abs(alpha) / limits.jerk * math.copysign(1.0, target - omega)
+        <= abs(target - omega))

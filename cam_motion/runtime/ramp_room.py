@@ -46,7 +46,7 @@ class RampRoom:
             for motion, period, limits in axes
             if limits.acceleration is not None or limits.jerk is not None]
 
-    def soften(self, fastest: float, limits: RampLimits) -> RampLimits:
+    def soften(self, fastest: float, limits: RampLimits, alpha: float = 0.0) -> RampLimits:
         """
         Find ramp limits with which all axes keep theirs.
 
@@ -56,17 +56,20 @@ class RampRoom:
             Greatest speed on the ramp [rad/s], a magnitude.
         limits : RampLimits
             Largest acceleration and jerk of the shaft.
+        alpha : float
+            Its acceleration at that speed, a magnitude [rad/s²].
 
         Returns
         -------
         RampLimits
-            The same, or both made smaller by the same factor.
+            The same, or both made smaller by the same factor. Speeds that break the limits at
+            constant speed count for nothing: no ramp would be gentle enough there.
 
         """
         share = 1.0
         for _ in range(_TRIES):
             softer = RampLimits(limits.acceleration * share, limits.jerk * share)
-            if all(_keeps(rates, own, fastest, softer) for rates, own in self._axes):
+            if all(_keeps(rates, own, fastest, softer, alpha) for rates, own in self._axes):
                 return softer
             share *= _SOFTER
         return softer
@@ -77,15 +80,19 @@ def _extreme(rates: Array) -> Array:
     return np.unique(rates, axis=1)
 
 
-def _keeps(rates: Array, limits: Limits, fastest: float, ramp: RampLimits) -> bool:
+def _keeps(rates: Array, limits: Limits, fastest: float, ramp: RampLimits, least: float) -> bool:
     y1, y2, y3 = rates
     for share in np.linspace(0.0, 1.0, _SPEEDS) ** 3:
         omega = fastest * (1.0 - share)
-        alpha = min(ramp.acceleration, math.sqrt(2.0 * ramp.jerk * (fastest - omega)))
-        if limits.acceleration is not None and np.any(
-                y2 * omega ** 2 + y1 * alpha > limits.acceleration):
-            return False
-        if limits.jerk is not None and np.any(
-                y3 * omega ** 3 + 3.0 * y2 * omega * alpha + y1 * ramp.jerk > limits.jerk):
+        if _breaks(y2 * omega ** 2, limits.acceleration) or _breaks(y3 * omega ** 3, limits.jerk):
+            continue
+        alpha = min(max(ramp.acceleration, least),
+                    math.sqrt(least * least + 2.0 * ramp.jerk * (fastest - omega)))
+        if _breaks(y2 * omega ** 2 + y1 * alpha, limits.acceleration) or _breaks(
+                y3 * omega ** 3 + 3.0 * y2 * omega * alpha + y1 * ramp.jerk, limits.jerk):
             return False
     return True
+
+
+def _breaks(values: Array, limit: float | None) -> bool:
+    return limit is not None and bool(np.any(values > limit))

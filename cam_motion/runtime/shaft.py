@@ -13,7 +13,7 @@ from enum import Enum
 import math
 
 from cam_motion.errors import CamMotionError
-from cam_motion.runtime.ramp import RampLimits, RampStep, speed_ramp
+from cam_motion.runtime.ramp import leads_to, RampLimits, RampStep, speed_ramp
 from cam_motion.runtime.ramp_room import RampRoom
 from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 from cam_motion.units import TURN
@@ -133,7 +133,7 @@ class Shaft:
         if self.mode(t) in (ShaftMode.QUICK_STOPPING, ShaftMode.QUICK_STOPPED):
             raise ShaftError('the shaft has been stopped quickly: reset it before it runs again')
         self._mode = ShaftMode.RUNNING
-        self._ramp(t, self.target, self._softened(t, self.target))
+        self._motion = self._ramp(t, self.target)
 
     def set_speed(self, t: float, speed: float) -> None:
         """
@@ -156,7 +156,7 @@ class Shaft:
             raise ShaftError(f'a speed must be a finite number, not {speed!r}')
         self.speed = speed
         if self.mode(t) is ShaftMode.RUNNING:
-            self._ramp(t, self.target, self._softened(t, self.target))
+            self._motion = self._ramp(t, self.target)
 
     def allow(self, t: float, speed: float) -> None:
         """
@@ -174,7 +174,7 @@ class Shaft:
             return
         self.allowed = speed
         if self.mode(t) is ShaftMode.RUNNING:
-            self._ramp(t, self.target, self._softened(t, self.target))
+            self._motion = self._ramp(t, self.target)
 
     @property
     def target(self) -> float:
@@ -192,7 +192,7 @@ class Shaft:
 
         """
         if self.mode(t) in (ShaftMode.RUNNING, ShaftMode.STOPPING_AT_CYCLE_END):
-            self._ramp(t, 0.0, self._softened(t, 0.0))
+            self._motion = self._ramp(t, 0.0)
             self._mode = ShaftMode.STOPPING
 
     def quick_stop(self, t: float) -> None:
@@ -206,7 +206,7 @@ class Shaft:
 
         """
         if self.mode(t) not in (ShaftMode.QUICK_STOPPING, ShaftMode.QUICK_STOPPED):
-            self._ramp(t, 0.0, self.quick_limits)
+            self._motion = self._motion.ramped(t, 0.0, self.quick_limits)
             self._mode = ShaftMode.QUICK_STOPPING
 
     def stop_at_cycle_end(self, t: float) -> None:
@@ -234,10 +234,9 @@ class Shaft:
             raise ShaftError(f'the shaft is not running ({mode.value}): it cannot stop at the '
                              'end of a cycle')
         speed = self.target
-        limits = self._softened(t, speed)
-        cruise = self._motion.ramped(t, speed, limits)
+        cruise = self._ramp(t, speed)
         start, cruising = cruise.settled_at, cruise.final
-        brake = speed_ramp(speed, 0.0, 0.0, limits)
+        brake = speed_ramp(speed, 0.0, 0.0, self._softened(cruising, 0.0))
         distance = ShaftMotion(start, cruising, brake).final.phi - cruising.phi
         sense = math.copysign(1.0, speed)
         turns = sense * (cruising.phi + distance) / TURN
@@ -287,14 +286,27 @@ class Shaft:
             still._mode = self._mode  # to be acknowledged all the same
         return still
 
-    def _softened(self, t: float, target: float) -> RampLimits:
+    def _softened(self, state: ShaftState, target: float) -> RampLimits:
         """Choose the limits of an ordinary ramp so that the axes keep theirs."""
         if self.room is None:
             return self.limits
-        _, omega, alpha = self._motion.state(t)
-        # an acceleration under way carries on while it is taken back
-        carried = abs(omega) + 0.5 * alpha * alpha / self.limits.jerk
-        return self.room.soften(max(carried, abs(target)), self.limits)
+        _, omega, alpha = state
+        if omega * target >= 0.0 and abs(omega) <= abs(target):
+            return self.room.soften(abs(target), self.limits)  # where it arrives without alpha
+        return self.room.soften(max(abs(omega), abs(target)), self.limits, abs(alpha))
 
-    def _ramp(self, t: float, target: float, limits: RampLimits) -> None:
-        self._motion = self._motion.ramped(t, target, limits)
+    def _ramp(self, t: float, target: float) -> ShaftMotion:
+        """Plan an ordinary ramp from an instant on."""
+        motion = self._motion
+        now = motion.state(t)
+        limits = self._softened(now, target)
+        if self.room is not None and not leads_to(now.omega, now.alpha, target, limits):
+            # The acceleration under way is taken back as it was built up, which the axes had
+            # room for: with a softer jerk it would carry the shaft far beyond its speeds.
+            motion = motion.released(t)
+            t, now = motion.settled_at, motion.final
+            limits = self._softened(now, target)
+            steps = speed_ramp(now.omega, 0.0, target, limits)
+            reached = ShaftMotion(t, now, steps).final
+            return motion.continued(steps, ShaftState(reached.phi, target, 0.0))
+        return motion.ramped(t, target, limits)

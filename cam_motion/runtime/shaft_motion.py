@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable
+import math
 from typing import NamedTuple
 
 from cam_motion.runtime.ramp import RampLimits, RampStep, speed_ramp
@@ -127,6 +128,28 @@ class ShaftMotion:
         steps = speed_ramp(now.omega, now.alpha, target, limits)
         reached = ShaftMotion(t, now, steps).final
         return ShaftMotion(t, now, steps, ShaftState(reached.phi, target, 0.0))
+
+    def released(self, t: float) -> ShaftMotion:
+        """
+        Take the acceleration back from an instant on, with the jerk of the ramp under way.
+
+        Parameters
+        ----------
+        t : float
+            Time from which on [s].
+
+        Returns
+        -------
+        ShaftMotion
+            The motion from that instant on; it ends at constant speed.
+
+        """
+        now, phase = self.state(t), max(0, bisect_right(self._starts, t) - 1)
+        # while the acceleration is held, the jerk of the ramp is that of its next phase
+        jerk = next((abs(each.jerk) for each in self._phases[phase:] if each.jerk), 0.0)
+        steps = [RampStep(abs(now.alpha) / jerk, -math.copysign(jerk, now.alpha))] if jerk else []
+        reached = ShaftMotion(t, now, steps).final
+        return ShaftMotion(t, now, steps, reached._replace(alpha=0.0))
 
     def continued(self, steps: Iterable[RampStep], final: ShaftState) -> ShaftMotion:
         """

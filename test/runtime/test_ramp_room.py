@@ -16,7 +16,7 @@ from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.ramp_room import RampRoom
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.units import TURN
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -38,6 +38,7 @@ def worst(shaft, begin, end):
     found = []
     for t in np.linspace(begin, end, 400):
         state, later = shaft.state(t), shaft.state(t + 1e-6)
+        assert -1e-9 <= state.omega <= shaft.allowed  # no ramp swings beyond its speeds
         omega, alpha = abs(state.omega), abs(state.alpha)
         jerk = abs(later.alpha - state.alpha) / 1e-6
         found.append((np.max(y2 * omega ** 2 + y1 * alpha),
@@ -45,6 +46,8 @@ def worst(shaft, begin, end):
     return np.max(found, axis=0)
 
 
+# an acceleration under way, and a command that softens the ramp, as found by chance
+@example(5.0, 0.0, False, [(1.0 / 3.0, 0.5), (0.125, 0.0)])
 @given(st.floats(5.0, 25.0), st.sampled_from([0.0, 1e-3, 0.02, 0.5]), st.booleans(),
        st.lists(st.tuples(st.floats(0.02, 2.0), st.floats(0.0, 1.0)), max_size=3))
 @settings(max_examples=30, deadline=None)
@@ -74,6 +77,17 @@ def check(shaft, begin, end, limits):
     acceleration, jerk = worst(shaft, begin, end)
     assert acceleration <= limits.acceleration * (1.0 + SLACK)
     assert limits.jerk is None or jerk <= limits.jerk * (1.0 + 5.0 * SLACK)
+
+
+def test_a_shaft_too_fast_for_its_axes_is_not_slowed_down_forever():
+    shaft = Shaft(20.0, RAMP, RAMP)
+    shaft.run(0.0)
+    t = shaft.settled_at + 1.0
+    bound = 10.0
+    shaft.room = RampRoom([(CAM, TURN, Limits(acceleration=PEAKS.acceleration * bound ** 2))])
+    shaft.allow(t, bound)
+    assert shaft.settled_at - t < 3.0
+    assert shaft.state(shaft.settled_at).omega == shaft.target < bound
 
 
 def test_without_need_nothing_is_softened():
