@@ -46,6 +46,10 @@ class RampRoom:
             for motion, period, limits in axes
             if limits.acceleration is not None or limits.jerk is not None]
 
+    def __bool__(self) -> bool:
+        """Tell whether any axis needs room."""
+        return bool(self._axes)
+
     def soften(self, fastest: float, limits: RampLimits, alpha: float = 0.0) -> RampLimits:
         """
         Find ramp limits with which all axes keep theirs.

@@ -288,7 +288,7 @@ class Shaft:
 
     def _softened(self, state: ShaftState, target: float) -> RampLimits:
         """Choose the limits of an ordinary ramp so that the axes keep theirs."""
-        if self.room is None:
+        if not self.room:
             return self.limits
         _, omega, alpha = state
         if omega * target >= 0.0 and abs(omega) <= abs(target):
@@ -300,7 +300,7 @@ class Shaft:
         motion = self._motion
         now = motion.state(t)
         limits = self._softened(now, target)
-        if self.room is not None and not leads_to(now.omega, now.alpha, target, limits):
+        if self.room and not leads_to(now.omega, now.alpha, target, limits):
             # The acceleration under way is taken back as it was built up, which the axes had
             # room for: with a softer jerk it would carry the shaft far beyond its speeds.
             motion = motion.released(t)
