@@ -54,17 +54,20 @@ class Child:
     Parameters
     ----------
     module : str
-        Module to run (``cam_motion.nodes.line``).
+        Module to run.
     arguments : Sequence[str]
         Its arguments.
     show : Callable[[str], None] | None
         Takes each line that it prints; None lets it print on our standard error.
+    name : str
+        What it is called in messages.
 
     """
 
-    def __init__(self, module: str, arguments: Sequence[str], show: Printer | None = None) -> None:
+    def __init__(self, module: str, arguments: Sequence[str], show: Printer | None = None,
+                 name: str = '') -> None:
         """Start the process."""
-        self.name = module.rsplit('.', 1)[-1]
+        self.name = name or module
         self.killed = False
         self._process = subprocess.Popen(
             [sys.executable, '-m', module, *arguments],
@@ -128,6 +131,28 @@ class Child:
         return self.code
 
 
+def node(name: str, arguments: Sequence[str], show: Printer | None = None) -> Child:
+    """
+    Start a node.
+
+    Parameters
+    ----------
+    name : str
+        Its executable.
+    arguments : Sequence[str]
+        Its arguments.
+    show : Callable[[str], None] | None
+        Takes each line that it prints; None lets it print on our standard error.
+
+    Returns
+    -------
+    Child
+        The process.
+
+    """
+    return Child('cam_motion.start', [name, *arguments], show, name)
+
+
 def recorder(config: str, output: Path, storage: str, show: Printer | None = None) -> Child:
     """
     Start a recorder.
@@ -150,7 +175,7 @@ def recorder(config: str, output: Path, storage: str, show: Printer | None = Non
 
     """
     # JSON is YAML: so quoted, a directory named 007 stays a text
-    return Child('cam_motion.nodes.bag_recorder', [
+    return node('bag_recorder', [
         '--ros-args', '-r', '__node:=bag_recorder', '--params-file', config,
         '-p', f'output:={json.dumps(str(output))}', '-p', f'storage:={json.dumps(storage)}',
     ], show)
