@@ -114,12 +114,12 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
     parts: list[Part] = []
     for part in names:
         try:
-            parts.append(_build_part(below[part]))
+            parts.append(build_part(below[part]))
         except ConfigurationError as error:
             problems += [problem.below(part) for problem in error.problems]
     profile = profiles.get(values['axis'] or '')
     if not problems and profile is not None:
-        problems += _lever_problems(names, parts, profile)
+        problems += lever_problems(names, parts, profile)
     if problems or profile is None:
         # an axis that is not there is the machine's own problem
         raise ConfigurationError(problems)
@@ -172,9 +172,28 @@ def cam_on_shaft(axis: CoupledAxis) -> CamProfile:
     return axis.profile
 
 
-def _build_part(given: Mapping[str, Any]) -> Part:
+def build_part(given: Mapping[str, Any]) -> Part:
+    """
+    Check the parameters of a part of a load and build it.
+
+    Parameters
+    ----------
+    given : Mapping[str, Any]
+        Parameters by name.
+
+    Returns
+    -------
+    Part
+        The part.
+
+    Raises
+    ------
+    ConfigurationError
+        With every problem, paths relative to the part.
+
+    """
     kind = given.get('type')
-    if kind not in PARTS:
+    if not isinstance(kind, str) or kind not in PARTS:
         raise ConfigurationError(check_values((KIND,), {'type': kind} if kind else {})[1])
     values, problems = check_values(PARTS[kind], given)
     window = values.get('window_deg')
@@ -198,8 +217,25 @@ def _build_part(given: Mapping[str, Any]) -> Part:
                  (first, last))
 
 
-def _lever_problems(names: list[str], parts: list[Part], profile: CamProfile) -> list[Problem]:
-    """Check that the slider stays within reach of every lever."""
+def lever_problems(names: list[str], parts: list[Part], profile: CamProfile) -> list[Problem]:
+    """
+    Check that the slider stays within reach of every lever.
+
+    Parameters
+    ----------
+    names : list[str]
+        Names of the parts.
+    parts : list[Part]
+        The parts.
+    profile : CamProfile
+        Motion of the follower [m].
+
+    Returns
+    -------
+    list[Problem]
+        One for each lever out of reach.
+
+    """
     low, high = (peak.value for peak in profile.curve.extremes(0))
     return [
         Problem(f'{name}.height', part.height,

@@ -11,11 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 import math
+from operator import mul
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.mechanism.linkage import Linkage
 from cam_motion.mechanism.loops import LoopEquations
-from cam_motion.mechanism.pose import bound_text, Certificate, Pose, Range, SingularError
+from cam_motion.mechanism.pose import (
+    bound_text,
+    Certificate,
+    Foothold,
+    Pose,
+    Range,
+    SingularError,
+)
 from cam_motion.mechanism.singular import Singularity
 from cam_motion.motion.piece import Array
 from cam_motion.units import TURN
@@ -28,7 +36,10 @@ _SHARE = 0.4
 _REACH = _SHARE + 0.16
 # Clearance at which a position counts as singular: five digits of its velocities are lost.
 _SINGULAR = 1e-5
-_NEWTON = 12
+# Up to this share the Jacobian at the beginning of the step closes the loops at its end: with
+# x = 0.1 the corrections shrink tenfold or more each, within 1.2 times the first, x²/2.
+_SHORT = 0.1
+_NEWTON = 16
 _CONVERGED = 1e-12  # so small a step leaves nothing but rounding
 _LARGEST = 1e3  # metres or radians: 159 turns of a crank
 _FAR = 10.0  # sums of all lengths; no input of a closed loop goes that far
@@ -76,6 +87,9 @@ class Assembly:
         self.linkage = linkage
         self.equations = LoopEquations(linkage)
         self._inputs = len(linkage.inputs)
+        self._scale = self.equations.units / self.equations.size
+        self._units = self.equations.units[self._inputs:].tolist()
+        self._orientation = 0  # that of the branch; it changes in singular positions only
         rough = np.array([linkage.start[name] for name in linkage.variables])
         self.start = self._close(rough)
 
@@ -109,7 +123,7 @@ class Assembly:
         try:
             return self.follow(self.start, inputs)
         except SingularError as error:
-            raise ConfigurationError(self._range_problems(inputs, error)) from error
+            raise ConfigurationError(self.range_problems(inputs, error)) from error
 
     def follow(self, pose: Pose, inputs: Mapping[str, float]) -> Pose:
         """
@@ -133,33 +147,87 @@ class Assembly:
             When a singular position is in the way; nothing beyond it is tried.
 
         """
-        names, count = self.linkage.inputs, self._inputs
-        target = np.array([inputs.get(name, pose[name]) for name in names])
-        z, steps = pose.values, pose.certificate.steps
-        worst = pose.certificate.kantorovich
-        inverse, clearance = self._condition(z)
-        while np.any(z[:count] != target):
-            if not clearance >= _SINGULAR:  # so that NaN counts as singular
-                raise SingularError(
-                    self._pose(z, clearance, steps, worst), Singularity.nearest(
-                        self.linkage, self.equations, z))
-            way = np.zeros_like(z)
-            way[:count] = (target - z[:count]) / self.equations.units[:count]
-            way[count:] = inverse @ -(self._scaled_jacobian(z)[:, :count] @ way[:count])
-            length = float(np.linalg.norm(way)) / clearance
-            share = 1.0 if length <= _SHARE else _SHARE / length
-            x = share * length
-            worst = max(worst, 0.5 * (x / (1.0 - x)) ** 2)
-            z = z + share * way * self.equations.units
-            if share == 1.0:
-                z[:count] = target
-            z = self._newton(z)
-            steps += 1
-            inverse, clearance = self._condition(z)
-        if not clearance >= _SINGULAR:
-            raise SingularError(self._pose(z, clearance, steps, worst), Singularity.nearest(
-                self.linkage, self.equations, z))
-        return self._pose(z, clearance, steps, worst)
+        target = np.array([inputs.get(name, pose[name]) for name in self.linkage.inputs])
+        foothold = self.stand(pose)
+        while not foothold.reaches(target):
+            foothold = self.step(foothold, target)
+        if not foothold.clearance >= _SINGULAR:
+            raise self._singular(foothold)
+        return self.pose(foothold)
+
+    def stand(self, pose: Pose) -> Foothold:
+        """
+        Give what the next step from a position needs to know.
+
+        Parameters
+        ----------
+        pose : Pose
+            The position.
+
+        Returns
+        -------
+        Foothold
+            The same, ready for `step`.
+
+        """
+        proof = pose.certificate
+        return self._foothold(pose.values, proof.steps, proof.kantorovich)
+
+    def step(self, foothold: Foothold, target: Array) -> Foothold:
+        """
+        Go one certified step towards other inputs, all the way if that is near enough.
+
+        Parameters
+        ----------
+        foothold : Foothold
+            Where to begin.
+        target : ndarray, shape (inputs,)
+            Inputs to go to [m, rad].
+
+        Returns
+        -------
+        Foothold
+            Where the step ends, on the same branch.
+
+        Raises
+        ------
+        SingularError
+            When it begins in a singular position.
+
+        """
+        if not foothold.clearance >= _SINGULAR:  # so that NaN counts as singular
+            raise self._singular(foothold)
+        count, units, z = self._inputs, self.equations.units, foothold.z
+        way = np.empty_like(z)
+        way[:count] = (target - z[:count]) / units[:count]
+        way[count:] = foothold.gain @ way[:count]
+        length = math.sqrt(way @ way) / foothold.clearance
+        share = 1.0 if length <= _SHARE else _SHARE / length
+        x = share * length
+        z = z + share * way * units
+        if share == 1.0:
+            z[:count] = target
+        z = self._newton(z) if x > _SHORT else self._close_by(z, foothold.inverse)
+        return self._foothold(z, foothold.steps + 1,
+                              max(foothold.worst, 0.5 * (x / (1.0 - x)) ** 2))
+
+    def pose(self, foothold: Foothold) -> Pose:
+        """
+        Give the position of a foothold.
+
+        Parameters
+        ----------
+        foothold : Foothold
+            The foothold.
+
+        Returns
+        -------
+        Pose
+            Its position, with the certificate.
+
+        """
+        return Pose(self.linkage, foothold.z, foothold.clearance, Certificate(
+            foothold.steps, foothold.worst, self._orientation))
 
     def range_of(self, name: str, pose: Pose | None = None) -> Range:
         """
@@ -211,46 +279,68 @@ class Assembly:
         return whole[:, :self._inputs], whole[:, self._inputs:]
 
     def _scaled_jacobian(self, z: Array) -> Array:
-        scaled: Array = self.equations.jacobian(z) * self.equations.units / self.equations.size
+        scaled: Array = self.equations.jacobian(z) * self._scale
         return scaled
 
-    def _condition(self, z: Array) -> tuple[Array, float]:
-        """Give the inverse of the Jacobian by the unknowns, and the clearance."""
+    def _foothold(self, z: Array, steps: int, worst: float) -> Foothold:
+        """Find the inverse of the Jacobian by the unknowns, and the clearance."""
+        count = self._inputs
+        jacobian = self._scaled_jacobian(z)
         try:
-            inverse = np.asarray(
-                np.linalg.inv(self._scaled_jacobian(z)[:, self._inputs:]), dtype=np.float64)
+            inverse = np.asarray(np.linalg.inv(jacobian[:, count:]), dtype=np.float64)
         except np.linalg.LinAlgError:
-            return np.zeros((len(z) - self._inputs,) * 2), 0.0
+            nothing = np.zeros((len(z) - count,) * 2)
+            return Foothold(z, nothing, nothing[:, :count], 0.0, steps, worst)
         # norm of the two columns of each loop, from their Gram matrix
-        real, imaginary = np.split(inverse, 2, axis=1)
-        a, b, c = ((u * v).sum(axis=0) for u, v in (
-            (real, real), (imaginary, imaginary), (real, imaginary)))
-        weights = np.sqrt(0.5 * (a + b) + np.hypot(0.5 * (a - b), c))
+        real, imaginary = inverse[:, :len(self.linkage.loops)], inverse[:, len(
+            self.linkage.loops):]
+        a, b = (0.5 * np.einsum('ij,ij->j', inverse, inverse)).reshape(2, -1)
+        c = np.einsum('ij,ij->j', real, imaginary)
+        weights = np.sqrt(a + b + np.hypot(a - b, c))
         # the bound holds within a reach that depends on it: from the greatest reach downwards
-        reach = _REACH / float((weights @ self.equations.bends(z, 0.0)).max())
-        return inverse, 1.0 / float((weights @ self.equations.bends(z, reach)).max())
+        here, growth = self.equations.bends(z, weights)
+        clearance = 1.0 / float((here + _REACH / float(here.max()) * growth).max())
+        return Foothold(z, inverse, -(inverse @ jacobian[:, :count]), clearance, steps, worst)
 
     def _newton(self, z: Array) -> Array:
         """Close the loops to rounding by the unknowns."""
         count, before = self._inputs, math.inf
+        z = z.copy()
         for _ in range(_NEWTON):
             step = np.linalg.solve(self._scaled_jacobian(z)[:, count:],
                                    self.equations.closure(z) / self.equations.size)
             size = float(np.linalg.norm(step))
-            z = z.copy()
             z[count:] -= step * self.equations.units[count:]
             if size < _CONVERGED or not size < before:
                 break  # steps are squared each time: rounding is all that is left
             before = size
         return z
 
+    def _close_by(self, z: Array, inverse: Array) -> Array:
+        """Do the same with the inverse of a Jacobian near by, in plain floats for speed."""
+        count, before = self._inputs, math.inf
+        values, rows = z.tolist(), (inverse / self.equations.size).tolist()
+        units = self._units
+        for _ in range(_NEWTON):
+            gaps = self.equations.gaps(values)
+            size = 0.0
+            for k, row in enumerate(rows):
+                step = sum(map(mul, row, gaps))
+                size += step * step
+                values[count + k] -= step * units[k]
+            if size < _CONVERGED ** 2 or not size < before:
+                break  # steps shrink each time: rounding is all that is left
+            before = size
+        return np.array(values)
+
     def _close(self, rough: Array) -> Pose:
         """Find the assembly that the start is near to."""
-        inverse, clearance = self._condition(rough)
-        step = inverse @ self.equations.closure(rough) / self.equations.size
+        foothold = self._foothold(rough, 0, 0.0)
+        step = foothold.inverse @ self.equations.closure(rough) / self.equations.size
         # h = M |J⁻¹| |J⁻¹ F|; the solution must be within the reach for which M holds
-        distance = float(np.linalg.norm(step)) / max(clearance, np.finfo(float).tiny)
-        if not (clearance >= _SINGULAR and distance <= 0.25):
+        distance = float(np.linalg.norm(step)) / max(
+            foothold.clearance, np.finfo(float).tiny)
+        if not (foothold.clearance >= _SINGULAR and distance <= 0.25):
             gap = float(np.abs(self.equations.closure(rough)).max())
             raise ConfigurationError([Problem(
                 'unknowns', {name: float(rough[self._inputs + k]) for k, name in enumerate(
@@ -258,18 +348,36 @@ class Assembly:
                 f'the start values name no branch: the loops miss by {gap:.4g} m there',
                 'measure them on a drawing: near a singular position more closely')])
         z = self._newton(rough)
-        return self._pose(z, self._condition(z)[1], 0, distance)
+        self._orientation = int(np.linalg.slogdet(self._scaled_jacobian(z)[:, self._inputs:])[0])
+        return self.pose(self._foothold(z, 0, distance))
 
-    def _pose(self, z: Array, clearance: float, steps: int, worst: float) -> Pose:
-        sign = np.linalg.slogdet(self._scaled_jacobian(z)[:, self._inputs:])[0]
-        return Pose(self.linkage, z, clearance, Certificate(steps, worst, int(sign)))
+    def _singular(self, foothold: Foothold) -> SingularError:
+        return SingularError(self.pose(foothold), Singularity.nearest(
+            self.linkage, self.equations, foothold.z))
 
-    def _range_problems(self, inputs: Mapping[str, float], error: SingularError,
-                        ) -> list[Problem]:
-        """Say which inputs are out of range; where none is alone, what stops them together."""
+    def range_problems(self, inputs: Mapping[str, float], error: SingularError,
+                       ranges: Mapping[str, Range] | None = None) -> list[Problem]:
+        """
+        Say which inputs are out of range; where none is alone, what stops them together.
+
+        Parameters
+        ----------
+        inputs : Mapping[str, float]
+            Inputs that cannot be reached [m, rad].
+        error : SingularError
+            What is in the way.
+        ranges : Mapping[str, Range], optional
+            How far each input goes from the start; None finds out.
+
+        Returns
+        -------
+        list[Problem]
+            The problems, paths the names of the inputs.
+
+        """
         problems = []
         for name, value in inputs.items():
-            found = self.range_of(name)
+            found = ranges[name] if ranges else self.range_of(name)
             beyond = found.at_low if value <= found.low else found.at_high
             if found.low < value < found.high or beyond is None:
                 continue

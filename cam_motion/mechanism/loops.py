@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from cam_motion.mechanism.compiled_sums import compile_sums, Compiled
 from cam_motion.mechanism.linkage import Linkage
 from cam_motion.motion.piece import Array
 import numpy as np
@@ -39,6 +40,8 @@ class LoopEquations:
         What one unit of each variable is: `size` for lengths, 1 for angles.
     loops, points : ndarray, shape (loops, vectors) and (points, vectors)
         How often each loop and each point passes each vector; -1 backwards.
+    gaps : Callable[[Sequence[float]], tuple[float, ...]]
+        The closure as plain floats, for where an array costs more than what is in it.
 
     References
     ----------
@@ -75,9 +78,30 @@ class LoopEquations:
         passed = np.abs(self.loops)
         mixed = np.einsum('ki,ia,ib->kab', passed, self._angle, self._length)
         self._slides = mixed.sum(axis=1) + mixed.sum(axis=2)
+        self._passed = passed
+        self._linkage = linkage
+        self.gaps, self._jacobian = self.compiled(self.loops)
+        self._slid = self._length.sum(axis=1)[:, None] * self._angle
         self.size = float((self._fixed * passed.max(axis=0)).max()) or 1.0
         self.units = np.array([1.0 if name in linkage.angles else self.size
                                for name in variables])
+
+    def compiled(self, counts: Array) -> tuple[Compiled, Compiled]:
+        """
+        Write sums of vectors out as functions of plain floats.
+
+        Parameters
+        ----------
+        counts : ndarray, shape (k, vectors)
+            How often each sum holds each vector.
+
+        Returns
+        -------
+        tuple[Callable, Callable]
+            The sums and their derivatives, see `compile_sums`.
+
+        """
+        return compile_sums(self._linkage, counts, self._turned.tolist())
 
     def along(self, path: Iterable[str]) -> Array:
         """
@@ -175,7 +199,7 @@ class LoopEquations:
             Real parts, then imaginary parts [m].
 
         """
-        return stacked(self.loops @ self.vectors(z))
+        return np.array(self.gaps(z.tolist()))
 
     def jacobian(self, z: Array) -> Array:
         """
@@ -192,9 +216,9 @@ class LoopEquations:
             Derivatives, rows as in `closure`.
 
         """
-        return stacked(self.loops @ self.slopes(z))
+        return np.array(self._jacobian(z.tolist())).reshape(2 * len(self.loops), len(z))
 
-    def bends(self, z: Array, reach: float) -> Array:
+    def bends(self, z: Array, weights: Array) -> tuple[Array, Array]:
         """
         Bound the second derivatives of the loops around a position, all free of units.
 
@@ -205,38 +229,21 @@ class LoopEquations:
         ----------
         z : ndarray, shape (n,)
             The variables [m, rad].
-        reach : float
-            How far around z the bound holds, in units of the variables.
+        weights : ndarray, shape (loops,)
+            Weights of the loops, above 0.
 
         Returns
         -------
-        ndarray, shape (loops, n)
-            The row sums of N for each loop; weighted with numbers above 0 and added over the
-            loops, the greatest bounds the norm of the weighted sum of the N.
+        tuple[ndarray, ndarray], shapes (n,)
+            The row sums of the weighted sum of the N, whose greatest bounds its norm: at z, and
+            what is added for each unit of distance from z, in units of the variables.
 
         """
+        weighted = weights @ self._passed
         length = np.abs(self._fixed + self._length @ z) / self.size
-        length += reach * self._length.sum(axis=1)
-        rows: Array = (np.abs(self.loops) * length) @ self._angle + self._slides
-        return rows
-
-
-def stacked(values: ComplexArray) -> Array:
-    """
-    Write complex rows as real ones.
-
-    Parameters
-    ----------
-    values : ndarray, shape (k, ...)
-        Complex rows.
-
-    Returns
-    -------
-    ndarray, shape (2 k, ...)
-        Real parts, then imaginary parts.
-
-    """
-    return np.concatenate([values.real, values.imag])
+        here: Array = (weighted * length) @ self._angle + weights @ self._slides
+        growth: Array = weighted @ self._slid
+        return here, growth
 
 
 def _without_rounding(values: Array) -> Array:

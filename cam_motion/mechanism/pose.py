@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from cam_motion.errors import CamMotionError
 from cam_motion.mechanism.linkage import Linkage
@@ -73,6 +74,52 @@ class Pose:
         """Write the inputs for people."""
         return ', '.join(f'{name} = {bound_text(self.linkage, name, self[name])}'
                          for name in self.linkage.inputs)
+
+
+class Foothold(NamedTuple):
+    """
+    A position, and what a step from there needs to know; see `Assembly.step`.
+
+    Attributes
+    ----------
+    z : ndarray, shape (n,)
+        The variables, inputs first [m, rad].
+    inverse : ndarray, shape (u, u)
+        Inverse of the Jacobian by the unknowns, free of units.
+    gain : ndarray, shape (u, inputs)
+        How the unknowns follow the inputs, free of units.
+    clearance : float
+        As of a `Pose`.
+    steps : int
+        Steps from the start.
+    worst : float
+        The greatest number of Kantorovich of these.
+
+    """
+
+    z: Array
+    inverse: Array
+    gain: Array
+    clearance: float
+    steps: int
+    worst: float
+
+    def reaches(self, target: Array) -> bool:
+        """
+        Tell whether the inputs are those wanted.
+
+        Parameters
+        ----------
+        target : ndarray, shape (inputs,)
+            Inputs [m, rad].
+
+        Returns
+        -------
+        bool
+            Whether they are.
+
+        """
+        return bool((self.z[:len(target)] == target).all())
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,8 @@ from cam_motion.io.plots import (
 from cam_motion.io.plots.cam_drive import part_names
 from cam_motion.io.plots.flywheel import FlywheelCurve
 from cam_motion.io.simulation import orbit_figures, start_up_figures
-from cam_motion.mechanism.radial_cam import RadialCam
+from cam_motion.mechanism.cam_disc import CamDisc
+from cam_motion.mechanism.cam_roller import TranslatingRoller
 from cam_motion.motion.profile import CamProfile
 from cam_motion.motion.segment import segment
 from cam_motion.units import DEGREE, RPM, TURN
@@ -41,7 +42,7 @@ CONFIG = Path(__file__).resolve().parents[2] / 'config'
 PRESS = load_machine(CONFIG / 'cam_press_drive.yaml').cam_drives['press_drive']
 ORBIT = find_orbit(PRESS.drive)
 RUN = start_up(PRESS.drive, 1.5)
-CAM = RadialCam(PRESS.drive.profile, PRESS.base_radius, PRESS.roller_radius)
+CAM = CamDisc(PRESS.drive.profile, TranslatingRoller(PRESS.base_radius, PRESS.roller_radius))
 
 
 def texts(axes):

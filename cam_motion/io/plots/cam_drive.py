@@ -16,7 +16,8 @@ from cam_motion.drive.cam_drive import CamDrive
 from cam_motion.drive.load import Follower, Friction, Lever, Part, Spring, TranslatingMass
 from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.plots.style import angle_axis, COLOURS, figure_text, GREY, new_figure, styled
-from cam_motion.mechanism.radial_cam import RadialCam
+from cam_motion.mechanism.cam_disc import CamDisc
+from cam_motion.mechanism.cam_roller import TranslatingRoller
 from cam_motion.motion.piece import Array
 from cam_motion.units import DEGREE, TURN
 from matplotlib.axes import Axes
@@ -24,7 +25,6 @@ from matplotlib.figure import Figure
 import numpy as np
 
 _POINTS = 121  # per element of at most 60 deg: smooth at print resolution
-_POINTED = 1e-12  # radius [m] of a follower without a roller, which no cam can tell from 0
 _FLAT = 5.0  # radii above this many times the largest of the roller's path are not drawn
 _MINOR_DEG, _APART_DEG = 30.0, 14.0  # angles numbered between the ends, unless too close to one
 _NAMES: tuple[tuple[type, str], ...] = (
@@ -67,8 +67,8 @@ def cam_figure(settings: CamDriveSettings) -> Figure:
         Five panels over the shaft angle: s, s′, s″, pressure angle, radius of the contour.
 
     """
-    cam = RadialCam(
-        settings.drive.profile, settings.base_radius, settings.roller_radius or _POINTED)
+    cam = CamDisc(settings.drive.profile,
+                  TranslatingRoller(settings.base_radius, settings.roller_radius))
     angles, at = turn_of(settings.drive)
     with styled():
         figure = new_figure(8.4)
@@ -146,7 +146,7 @@ def note(row: Axes, at: tuple[float, float], text: str, shift: tuple[float, floa
                  bbox={'boxstyle': 'square,pad=0.1', 'color': 'white', 'alpha': 0.8})
 
 
-def _draw_pressure(row: Axes, cam: RadialCam, angles: Array, at: Follower) -> None:
+def _draw_pressure(row: Axes, cam: CamDisc, angles: Array, at: Follower) -> None:
     row.plot(angles, cam.pressure_angle(at.q) / DEGREE, color=COLOURS[0])
     greatest = cam.max_pressure_angle
     note(row, (greatest.at / DEGREE, greatest.value / DEGREE),
@@ -156,9 +156,9 @@ def _draw_pressure(row: Axes, cam: RadialCam, angles: Array, at: Follower) -> No
     row.set_ylabel('pressure\nangle α [deg]')
 
 
-def _draw_radius(row: Axes, cam: RadialCam, angles: Array, at: Follower, roller: float) -> None:
+def _draw_radius(row: Axes, cam: CamDisc, angles: Array, at: Follower, roller: float) -> None:
     radius = cam.contour_radius(at.q)
-    cap = _FLAT * (cam.base + float(np.max(at.s)))
+    cap = _FLAT * (cam.base_radius + roller + float(np.max(at.s)))
     row.plot(angles, np.where(np.abs(radius) <= cap, radius, np.nan), color=COLOURS[0])
     least = cam.least_contour_radius
     note(row, (least.at / DEGREE, least.value),
