@@ -25,6 +25,11 @@ DEGREE = math.pi / 180.0
 RPM = TURN / 60.0
 """One revolution, or one cycle, per minute [rad/s]."""
 
+MM = 1e-3
+"""One millimetre [m]."""
+
+_POWERS = ('', '', '²', '³', '⁴', '⁵', '⁶')
+
 
 def rate_text(unit: str, order: int, base: str = 's') -> str:
     """
@@ -35,7 +40,7 @@ def rate_text(unit: str, order: int, base: str = 's') -> str:
     unit : str
         Unit of the quantity itself (``m``).
     order : int
-        Order of the derivative, 0 to 3.
+        Order of the derivative, 0 to 6.
     base : str
         Unit of the variable of differentiation (``s``, ``rad``).
 
@@ -45,4 +50,4 @@ def rate_text(unit: str, order: int, base: str = 's') -> str:
         The unit, for example ``m/s²``.
 
     """
-    return unit if order == 0 else f'{unit}/{base}{("", "", "²", "³")[order]}'
+    return unit if order == 0 else f'{unit}/{base}{_POWERS[order]}'

@@ -11,16 +11,22 @@ Scalar evaluation at full speed: a curve written out as one Python function.
 A generic loop over coefficients costs several microseconds per setpoint in Python. The curve is
 therefore written out once, when it is built, as the source of a function of one float: a binary
 decision over the joints, then Horner's scheme with the numbers in place. Only floats of our own
-enter the source, through ``repr``, which is exact.
+enter the source, through ``repr``, which is exact. Of the many like pieces of a table the numbers
+stand in a list instead, in which the joint is searched: that is hardly slower, and hundreds of
+leaves would take a good part of a second to compile.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 import math
+from typing import Any
 
 from cam_motion.motion.piece import Piece
 from cam_motion.units import TURN
+
+_MANY = 128  # pieces from which their numbers stand in a list and not in the source
 
 Sample = tuple[float, float, float, float]
 Sampler = Callable[[float], Sample]
@@ -43,7 +49,7 @@ def compile_sampler(breaks: Sequence[float], pieces: Sequence[Piece]) -> Sampler
         ``sample(x)`` giving (y, y', y'', y'''); outside the curve its end pieces go on.
 
     """
-    return _build(['def sample(x):', *_tree(breaks, pieces, 0, len(pieces), 1, '')])
+    return _build('x', [], breaks, pieces, '')
 
 
 def compile_periodic_sampler(
@@ -69,18 +75,49 @@ def compile_periodic_sampler(
     """
     gain = f' + turn * {advance!r}' if advance else ''
     head = [
-        'def sample(phi):',
         f'    turn = floor(phi / {TURN!r})',
         f'    x = phi - turn * {TURN!r}',
     ]
-    return _build(head + _tree(breaks, pieces, 0, len(pieces), 1, gain))
+    return _build('phi', head, breaks, pieces, gain)
 
 
-def _build(lines: list[str]) -> Sampler:
-    namespace = {'cos': math.cos, 'sin': math.sin, 'floor': math.floor}
+def _build(argument: str, head: list[str], breaks: Sequence[float], pieces: Sequence[Piece],
+           gain: str) -> Sampler:
+    namespace: dict[str, Any] = {'cos': math.cos, 'sin': math.sin, 'floor': math.floor}
+    kept = ''
+    if len(pieces) >= _MANY and not any(piece.waves for piece in pieces):
+        size = max(1, *(len(piece.coefficients) for piece in pieces))
+        namespace |= {
+            'search': bisect_right, 'joints': tuple(breaks[1:-1]),
+            'rows': tuple((start, *piece.coefficients, *[0.0] * (size - len(piece.coefficients)))
+                          for start, piece in zip(breaks, pieces))}
+        # as defaults they are local names, which are the fastest to read
+        kept = ', search=search, joints=joints, rows=rows'
+        body = _row(size, gain)
+    else:
+        body = _tree(breaks, pieces, 0, len(pieces), 1, gain)
+    lines = [f'def sample({argument}{kept}):', *head, *body]
     exec('\n'.join(lines), namespace)  # noqa: S102 (our own numbers only, see the module's head)
-    sampler: Sampler = namespace['sample']  # type: ignore[assignment]
+    sampler: Sampler = namespace['sample']
     return sampler
+
+
+def _row(size: int, gain: str) -> list[str]:
+    """Write value and three derivatives of whichever piece is found in the list."""
+    names = [f'c{power}' for power in range(size)]
+    sums = []
+    for order in range(4):
+        terms = [(math.perm(power, order), names[power]) for power in range(order, size)]
+        text = '0.0'
+        for place, (factor, name) in enumerate(reversed(terms)):
+            term = name if factor == 1 else f'{float(factor)!r} * {name}'
+            text = term if place == 0 else f'{term} + u * ({text})'
+        sums.append(text)
+    return [
+        f'    start, {", ".join(names)} = rows[search(joints, x)]',
+        '    u = x - start',
+        f'    return {sums[0]}{gain}, {sums[1]}, {sums[2]}, {sums[3]}',
+    ]
 
 
 def _tree(

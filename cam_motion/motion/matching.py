@@ -17,6 +17,7 @@ from cam_motion.motion.laws import MotionLaw
 from cam_motion.motion.laws.with_conditions import quintic
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import Piecewise
+from cam_motion.motion.points import through_points
 from cam_motion.motion.segment import Segment
 import numpy as np
 
@@ -33,6 +34,8 @@ _STIFFNESS = _COEFFICIENTS.T @ _JERK_SQUARED @ _COEFFICIENTS
 def matched(segments: Sequence[Segment]) -> tuple[Segment, ...]:
     """
     Give every segment with the law ``auto`` the curve that joins its neighbours.
+
+    Those with the law ``spline`` get theirs first, see `through_points`.
 
     Parameters
     ----------
@@ -63,8 +66,9 @@ def matched(segments: Sequence[Segment]) -> tuple[Segment, ...]:
     C. de Boor, A Practical Guide to Splines (1978), least property of the odd-degree spline.
 
     """
+    segments = through_points(segments)
     if not any(segment.is_auto for segment in segments):
-        return tuple(segments)
+        return segments
     starts = [0.0, *(segment.end for segment in segments)]
     spans = np.diff(starts)
     # in units of the mean span, so that the equations are well scaled

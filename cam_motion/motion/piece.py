@@ -33,6 +33,8 @@ _CHEBYSHEV_TRANSFORM[0] *= 0.5
 # harmless, because the zeros serve as candidates at which a curve is then evaluated.
 _IMAGINARY_SLACK = 1e-4
 _NEWTON_STEPS = 3
+_SMALL = 1e-12  # share of the largest coefficient below which a leading one spoils the roots
+_NEAR = 5e-3  # how far (as a share of the piece) a root may be off before it is polished
 _VANISHES = 1e-12  # values below this share of the largest in their stretch are zero
 # Gauss-Legendre rule: exact for the square of any polynomial up to degree 31, and to rounding
 # for the square of a sinusoid over at most half a wave.
@@ -209,8 +211,22 @@ class Piece:
             return find_zeros(self, self.derivative, self.stretches())
         # in u / length, where the coefficients say how much each power matters
         scaled = [c * self.length**k for k, c in enumerate(self.coefficients)]
-        roots = polynomial.polyroots(np.trim_zeros(scaled, 'b'))
-        near = roots.real[np.abs(roots.imag) < _IMAGINARY_SLACK]
+        if abs(scaled[0]) > sum(map(abs, scaled[1:])):
+            return []  # as in most pieces of a table: it cannot come down to zero
+        series = np.array(scaled)
+        sizes = np.abs(series)
+        # very small leading coefficients spoil the roots: these are found without them, and
+        # polished with them
+        last = int(np.flatnonzero(sizes > _SMALL * sizes.max())[-1])
+        roots = polynomial.polyroots(series[:last + 1])
+        near = roots.real[(np.abs(roots.imag) < _IMAGINARY_SLACK)
+                          & (np.abs(roots.real - 0.5) < 0.5 + 2.0 * _NEAR)]
+        slope = polynomial.polyder(series)
+        for _ in range(_NEWTON_STEPS if near.size else 0):
+            rise = polynomial.polyval(near, slope)
+            step = np.divide(polynomial.polyval(near, series), rise, out=np.zeros_like(near),
+                             where=rise != 0.0)
+            near = near - np.where(np.abs(step) < _NEAR, step, 0.0)
         return [self.length * float(x) for x in near if 0.0 < x < 1.0]
 
     def mean_square(self) -> float:

@@ -19,6 +19,7 @@ from cam_motion.errors import DomainError
 from cam_motion.motion.compiled import compile_sampler, Sampler
 from cam_motion.motion.piece import Array, find_zeros, Piece
 import numpy as np
+from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 JOINT_TOLERANCE = 1e-9
@@ -26,6 +27,7 @@ JOINT_TOLERANCE = 1e-9
 
 _TIE = 1e-12  # peaks this close (relative) count as equal; the first one is reported
 _EDGE = 1e-12  # how far (relative) an argument may lie outside the curve by rounding
+_SHORT = 6  # coefficients of a polynomial whose products keep their roots exact enough
 _BLOCK = 16384  # points evaluated at a time: small enough to stay in a core's cache
 
 
@@ -334,11 +336,14 @@ class Piecewise:
 
         """
         curve = self.differentiated(order)
-        slack = JOINT_TOLERANCE * abs(self.peak(order).value)
-        steps = (
+        steps = [
             Jump(at, order, right.at(0.0) - left.at(left.length))
             for at, left, right in zip(self.breaks[1:], curve.pieces, curve.pieces[1:])
-        )
+        ]
+        # mostly rounding against any value already, and no peak need be searched for
+        some = max(abs(piece.at(0.5 * piece.length)) for piece in curve.pieces)
+        steps = [step for step in steps if abs(step.amount) > JOINT_TOLERANCE * some]
+        slack = JOINT_TOLERANCE * abs(self.peak(order).value) if steps else 0.0
         return [step for step in steps if abs(step.amount) > slack]
 
     def end_values(self, order: int) -> tuple[float, float]:
@@ -367,6 +372,11 @@ def _stationary_power(piece: Piece) -> list[float]:
     j = a.derivative
     if v.is_zero or a.is_zero:
         return []
+    if not piece.waves and len(piece.coefficients) <= _SHORT:
+        # as in tables, of which there are many pieces
+        found = polynomial.polyadd(polynomial.polymul(a.coefficients, a.coefficients),
+                                   polynomial.polymul(v.coefficients, j.coefficients or (0.0,)))
+        return Piece(piece.length, tuple(found.tolist())).zeros()
     return find_zeros(
         lambda u: a(u) ** 2 + v(u) * j(u),
         lambda u: 3.0 * a(u) * j(u) + v(u) * j.derivative(u),

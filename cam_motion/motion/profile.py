@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 import math
 from typing import Any, NamedTuple
@@ -45,6 +45,25 @@ class SegmentPeaks(NamedTuple):
     jerk: Peak
 
 
+class VelocityStepError(ConfigurationError):
+    """
+    The velocity of a cam steps at a joint, which is the only thing wrong with it.
+
+    Parameters
+    ----------
+    problems : Iterable[Problem]
+        One per step.
+    segments : tuple[Segment, ...]
+        The segments of the cam.
+
+    """
+
+    def __init__(self, problems: Iterable[Problem], segments: tuple[Segment, ...]) -> None:
+        """Keep the segments, for whoever tells more about their joints."""
+        super().__init__(problems)
+        self.segments = segments
+
+
 class CamProfile:
     """
     The position of an axis as a function of the shaft angle, y(phi), exact and periodic.
@@ -64,9 +83,10 @@ class CamProfile:
     Raises
     ------
     ConfigurationError
-        When the angles do not rise to 360 degrees, a dwell has a lift, the cycle does not
-        close, or the velocity steps at a joint; all problems are listed, their paths relative
-        to the axis.
+        When the angles do not rise to 360 degrees, a dwell has a lift or the cycle does not
+        close; all problems are listed, their paths relative to the axis.
+    VelocityStepError
+        When the velocity steps at a joint.
 
     """
 
@@ -76,23 +96,15 @@ class CamProfile:
         self.accumulate = accumulate
         if problems := program_problems(self.segments, accumulate):
             raise ConfigurationError(problems)
-        self.segments = matched(self.segments)
+        self.segments, self.parts = joined(self.segments)
         self.advance = math.fsum(s.lift for s in self.segments) if accumulate else 0.0
-        self._parts = tuple(self._join())
         self.curve = Piecewise(
             0.0,
-            [piece for part in self._parts for piece in part.pieces],
-            [0.0, *(x for part in self._parts for x in part.breaks[1:])],
+            [piece for part in self.parts for piece in part.pieces],
+            [0.0, *(x for part in self.parts for x in part.breaks[1:])],
         )
         if problems := self._velocity_problems():
-            raise ConfigurationError(problems)
-
-    def _join(self) -> Iterable[Piecewise]:
-        start, lifts = 0.0, [0.0]
-        for each in self.segments:
-            yield each.law.curve.scaled(start, each.end, each.gain, math.fsum(lifts))
-            start = each.end
-            lifts.append(each.lift)
+            raise VelocityStepError(problems, self.segments)
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the compiled function out: it is made anew where it is needed."""
@@ -180,7 +192,11 @@ class CamProfile:
             last -= self.advance
         seam = Jump(0.0, order, first - last)
         jumps = self.curve.jumps(order)
-        if abs(seam.amount) > JOINT_TOLERANCE * abs(self.curve.peak(order).value):
+        # as in the curve itself: mostly no peak need be searched for
+        pieces = self.curve.differentiated(order).pieces
+        some = max(abs(piece.at(0.5 * piece.length)) for piece in pieces)
+        if abs(seam.amount) > JOINT_TOLERANCE * some and (
+                abs(seam.amount) > JOINT_TOLERANCE * abs(self.curve.peak(order).value)):
             jumps.insert(0, seam)
         return jumps
 
@@ -189,9 +205,9 @@ class CamProfile:
         """Peaks of each segment, exact, with the angle of each."""
         steps = [jump.at for jump in self.jumps(2)]
         found = []
-        for each, part in zip(self.segments, self._parts):
+        for each, part in zip(self.segments, self.parts):
             jerk = part.peak(3)
-            if not each.is_dwell:
+            if part.peak(1).value:
                 for at in steps:
                     place = TURN if at == 0.0 and part.end == TURN else at
                     if part.start <= place <= part.end or part.start == at:
@@ -202,7 +218,7 @@ class CamProfile:
         return tuple(found)
 
     def _velocity_problems(self) -> list[Problem]:
-        names = {part.start: n for n, part in enumerate(self._parts)}
+        names = {part.start: n for n, part in enumerate(self.parts)}
         problems = []
         for jump in self.jumps(1):
             n = names.get(jump.at, 0)
@@ -216,6 +232,32 @@ class CamProfile:
                 f'at the same velocity; from {start.value} to {end.value} these run smoothly: '
                 + ', '.join(laws_between(start, end))))
         return problems
+
+
+def joined(segments: Sequence[Segment]) -> tuple[tuple[Segment, ...], tuple[Piecewise, ...]]:
+    """
+    Join segments, each starting where the one before has led.
+
+    Parameters
+    ----------
+    segments : Sequence[Segment]
+        The segments of one turn; their angles rise.
+
+    Returns
+    -------
+    tuple[tuple[Segment, ...], tuple[Piecewise, ...]]
+        The segments, those with the law ``auto`` matched to their neighbours, and their curves
+        over the shaft angle [rad].
+
+    """
+    segments = matched(segments)
+    parts: list[Piecewise] = []
+    start, lifts = 0.0, [0.0]
+    for each in segments:
+        parts.append(each.law.curve.scaled(start, each.end, each.gain, math.fsum(lifts)))
+        start = each.end
+        lifts.append(each.lift)
+    return segments, tuple(parts)
 
 
 def program_problems(segments: tuple[Segment, ...], accumulate: bool) -> list[Problem]:

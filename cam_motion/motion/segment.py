@@ -55,9 +55,14 @@ class Segment:
         return self.law.name == 'auto'
 
     @property
+    def is_spline(self) -> bool:
+        """Whether the curve goes through the points of a table."""
+        return self.law.name == 'spline'
+
+    @property
     def gain(self) -> float:
-        """Factor from the law to the position: 1 for `auto`, whose curve has the axis' unit."""
-        return 1.0 if self.is_auto else self.lift
+        """Factor from the law to the position: 1 where the curve has the axis' unit."""
+        return 1.0 if self.is_auto or self.is_spline else self.lift
 
 
 def segment(name: str, end_deg: float, lift: float = 0.0, law: str = 'dwell',

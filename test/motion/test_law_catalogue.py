@@ -12,6 +12,7 @@ from math import pi, sqrt
 
 from cam_motion.errors import ConfigurationError
 from cam_motion.motion.laws import Boundary, LAWS, laws_between, make_law
+from cam_motion.motion.laws.inflection import INFLECTION
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -143,11 +144,12 @@ def test_without_constant_velocity_the_modified_sine_and_the_cycloidal_law_are_l
 
 
 SYMMETRIC = [name for name, law in LAWS.items()
-             if 'inflection' in {parameter.name for parameter in law.parameters}]
+             if any(parameter is INFLECTION for parameter in law.parameters)]
 
 
 @pytest.mark.parametrize('name', [*SYMMETRIC, 'cubic', 'universal', 'polynomial', 'auto',
-                                  'flexible_polynomial', 'smooth_trapezoidal_velocity'])
+                                  'flexible_polynomial', 'spline', 'smooth_trapezoidal_velocity',
+                                  'b_spline', 'modified_sine_vv'])
 def test_symmetric_laws_are_symmetric(name):
     law = make_law(name)
     assert law(1.0 - XI) == pytest.approx(1.0 - law(XI), abs=SYMMETRY)
@@ -164,7 +166,8 @@ def test_a_law_from_rest_to_a_turn_has_a_return_that_mirrors_it(name):
 
 def test_every_law_ends_as_its_kind_says():
     both_rest = {*SYMMETRIC, 'dwell', 'modified_trapezoid', 'universal', 'polynomial', 'auto',
-                 'flexible_polynomial', 'smooth_trapezoidal_velocity'} - {'simple_harmonic'}
+                 'flexible_polynomial', 'spline', 'smooth_trapezoidal_velocity', 'b_spline'
+                 } - {'simple_harmonic'}
     both_turn = {'simple_harmonic', 'cubic', 'constant_acceleration', 'trapezoidal_velocity'}
     for name in LAWS:
         ends = make_law(name).ends
@@ -176,14 +179,19 @@ def test_every_law_ends_as_its_kind_says():
 
 
 def test_laws_between_two_conditions_are_those_that_fit_and_those_that_fit_any():
-    flexible = ['polynomial', 'auto', 'flexible_polynomial']
+    flexible = ['b_spline', 'polynomial', 'auto', 'flexible_polynomial', 'spline']
     resting = laws_between(Boundary.REST, Boundary.REST)
     assert {'modified_sine', 'polynomial_345', 'cycloidal', *flexible} <= set(resting)
     assert not {'dwell', 'cubic', 'double_harmonic', 'constant_velocity'} & set(resting)
     assert laws_between(Boundary.REST, Boundary.TURN) == [
-        'double_harmonic', 'polynomial_8', *flexible]
-    assert laws_between(Boundary.REST, Boundary.CONSTANT_VELOCITY) == flexible
-    assert 'constant_velocity' in laws_between(*(Boundary.CONSTANT_VELOCITY,) * 2)
+        'double_harmonic', 'polynomial_8', 'acceleration_trapezoid_rt',
+        'harmonic_combination_rt', *flexible]
+    assert laws_between(Boundary.REST, Boundary.CONSTANT_VELOCITY) == [
+        'acceleration_trapezoid_rv', *flexible]
+    assert laws_between(Boundary.TURN, Boundary.CONSTANT_VELOCITY) == [
+        'harmonic_combination_tv', *flexible]
+    assert laws_between(*(Boundary.CONSTANT_VELOCITY,) * 2) == [
+        'constant_velocity', 'modified_sine_vv', *flexible]
 
 
 inflections = st.integers(2, 98).map(lambda n: n / 100.0)

@@ -156,7 +156,7 @@ def test_a_law_that_does_not_fit_is_refused_with_those_that_do():
     assert problem.path == 'back.law'
     assert problem.hint.endswith(
         'from constant velocity to rest these run smoothly: '
-        'polynomial, auto, flexible_polynomial')
+        'acceleration_trapezoid_vr, b_spline, polynomial, auto, flexible_polynomial, spline')
 
 
 def test_segments_without_auto_are_left_alone():

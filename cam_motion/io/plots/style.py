@@ -37,6 +37,8 @@ WIDTH = 9.0
 
 _DPI = 160
 _POINTS = 240  # per segment: smooth at print resolution
+_MOST_POINTS = 12000  # of one curve, however many pieces a table makes of it
+_FEWEST_POINTS = 6
 # Two angle labels closer than this would touch at the width above [deg].
 _CLOSE_DEG = 14.0
 _STYLE: dict[Any, Any] = {
@@ -157,8 +159,9 @@ def exact_curve(profile: CamProfile, order: int) -> tuple[Array, Array]:
     """
     curve = profile.curve.differentiated(order)
     angles, values = [], []
+    count = max(_FEWEST_POINTS, min(_POINTS, _MOST_POINTS // len(curve.pieces)))
     for begin, piece in zip(curve.breaks, curve.pieces):
-        local = np.linspace(0.0, piece.length, _POINTS)
+        local = np.linspace(0.0, piece.length, count)
         angles.append((begin + local) / DEGREE)
         values.append(piece(local))
     return np.concatenate(angles), np.concatenate(values)

@@ -13,7 +13,10 @@ from cam_motion.motion.laws import (
     polynomial,
     scca,
     trapezoidal,
+    variants,
+    with_coefficients,
     with_conditions,
+    with_points,
 )
 from cam_motion.motion.laws.boundary import Boundary
 from cam_motion.motion.laws.law import (
@@ -30,5 +33,5 @@ from cam_motion.motion.laws.parameters import LawParameter
 __all__ = [
     'Boundary', 'Coefficients', 'LAWS', 'LawParameter', 'LawType', 'MotionLaw', 'harmonic',
     'laws_between', 'make_law', 'modified', 'polynomial', 'register', 'scca', 'trapezoidal',
-    'with_conditions',
+    'variants', 'with_coefficients', 'with_conditions', 'with_points',
 ]

@@ -36,8 +36,8 @@ class Coefficients:
     ----------
     cv, ca, cj : float
         Largest magnitudes of s', s'', s''' [-]; infinite where the derivative before steps.
-    cj_inside : float
-        Largest magnitude of s''' between the steps [-].
+    ca_inside, cj_inside : float
+        Largest magnitudes of s'' and s''' between the steps [-].
     power : float
         Largest magnitude of s' s'' [-]: the power that an inertia takes.
     rms_acceleration : float
@@ -48,6 +48,7 @@ class Coefficients:
     cv: float
     ca: float
     cj: float
+    ca_inside: float
     cj_inside: float
     power: float
     rms_acceleration: float
@@ -114,6 +115,7 @@ class MotionLaw:
             cv=abs(curve.peak(1).value),
             ca=math.inf if steps_velocity else ca,
             cj=math.inf if steps_acceleration else cj_inside,
+            ca_inside=ca,
             cj_inside=cj_inside,
             power=math.inf if steps_velocity else abs(curve.peak_power().value),
             rms_acceleration=math.inf if steps_velocity else curve.rms(2),

@@ -1,0 +1,383 @@
+# Copyright 2026 The cam_motion authors
+# Licensed under the Apache License, Version 2.0 (the "License"); you may not use this file except
+# in compliance with the License. You may obtain a copy of the License at
+# http://www.apache.org/licenses/LICENSE-2.0 Unless required by applicable law or agreed to in
+# writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
+# WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
+# language governing permissions and limitations under the License.
+"""What is wrong with a cam table: where, how badly, and the way out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+import math
+
+from cam_motion.io.tables.outliers import Break, breaks_in, second_differences
+from cam_motion.io.tables.table import CamTable, LINEAR, QUINTIC, RETURN
+from cam_motion.motion.piece import Array
+from cam_motion.motion.spline import interpolate, NATURAL, PERIODIC, smooth
+from cam_motion.units import DEGREE, rate_text, TURN
+import numpy as np
+
+ERROR, WARNING, NOTE = 'error', 'warning', 'note'
+
+_STAIRS = 4  # so many velocity steps on straight lines are a staircase
+_COARSE = 0.01  # error between every second point, as a share of the stroke, that is too much
+_NOISE = 0.05  # share of the peak acceleration that rounding may add
+_MOST_DECIMALS = 9
+_DIFFERS = 0.02  # share of its peak by which a column may differ from the positions
+_MOST_FINDINGS = 8
+
+
+@dataclass(frozen=True)
+class Finding:
+    """
+    One thing that is wrong with a table.
+
+    Attributes
+    ----------
+    code : str
+        Its name, for machines.
+    severity : str
+        ``error``: no cam can be made of it; ``warning``: the cam would jerk or be wrong;
+        ``note``: to be known.
+    line : int
+        Line of the file; 0 where it concerns all of it.
+    angle_deg : float
+        Shaft angle [deg]; NaN likewise.
+    value : float
+        How large it is, in the unit that ``text`` names.
+    text : str
+        What is wrong.
+    harm : str
+        What comes of it at the stated speed.
+    hint : str
+        The way out.
+
+    """
+
+    code: str
+    severity: str
+    line: int
+    angle_deg: float
+    value: float
+    text: str
+    harm: str
+    hint: str
+
+
+@dataclass(frozen=True)
+class _Context:
+    table: CamTable
+    omega: float
+    unit: str
+
+    def found(self, code: str, severity: str, place: int | None, value: float, text: str,
+              harm: str, hint: str) -> Finding:
+        line, angle = 0, math.nan
+        if place is not None:
+            line = self.table.lines[place]
+            angle = (self.table.start + float(self.table.angle[place])) / DEGREE
+        return Finding(code, severity, line, angle, float(value), text, harm, hint)
+
+    def rate(self, value: float, order: int) -> str:
+        """Write a derivative at the stated speed."""
+        return f'{value * self.omega**order:.5g} {rate_text(self.unit, order)}'
+
+
+def lint(table: CamTable, omega: float, unit: str = 'unit') -> list[Finding]:
+    """
+    Look for whatever is wrong with a table.
+
+    Parameters
+    ----------
+    table : CamTable
+        The table.
+    omega : float
+        Speed of the shaft at which the harm is told [rad/s].
+    unit : str
+        Unit of the positions.
+
+    Returns
+    -------
+    list[Finding]
+        Everything found, errors first; nothing for a table that makes a good cam.
+
+    """
+    context = _Context(table, omega, unit)
+    found = _unusable(context)
+    if not found:
+        found += _ends(context)
+        # unequal ends are no corner besides
+        last = len(table.angle) - 2 if found else len(table.angle)
+        steps = [each for each in breaks_in(table) if each.place < last]
+        found += _steps(context, steps)
+        if table.velocity is not None:
+            found += _columns(context)
+        if not steps:
+            found += [*_coarse(context), *_rounded(context)]
+    return sorted(found, key=lambda each: (ERROR, WARNING, NOTE).index(each.severity))
+
+
+def errors_in(table: CamTable, unit: str = 'unit') -> list[Finding]:
+    """
+    Look for what keeps a table from being a cam at all.
+
+    Parameters
+    ----------
+    table : CamTable
+        The table.
+    unit : str
+        Unit of the positions.
+
+    Returns
+    -------
+    list[Finding]
+        The errors of `lint`.
+
+    """
+    return _unusable(_Context(table, 1.0, unit))
+
+
+def _unusable(context: _Context) -> list[Finding]:
+    return list(_order(context)) or list(_open(context))
+
+
+def _order(context: _Context) -> Iterator[Finding]:
+    """Angles that stand still or fall."""
+    table = context.table
+    for place in np.flatnonzero(np.diff(table.angle) <= 0.0)[:_MOST_FINDINGS] + 1:
+        before, after = ((table.start + table.angle[n]) / DEGREE for n in (place - 1, place))
+        same = before == after
+        moved = table.position[place] - table.position[place - 1]
+        yield context.found(
+            'duplicate_angle' if same else 'falling_angle', ERROR, int(place), after - before,
+            f'the angle {after:.6g} deg stands twice, with positions that differ by {moved:.5g} '
+            f'{context.unit}' if same else
+            f'the angle falls from {before:.6g} to {after:.6g} deg',
+            'there is no curve through it: the velocity would be infinite',
+            'remove one of the two lines' if same else 'put the lines in order')
+
+
+def _open(context: _Context) -> Iterator[Finding]:
+    table = context.table
+    last = len(table.angle) - 1
+    if not table.covers_cycle:
+        covered = table.angle[-1] / DEGREE
+        yield context.found(
+            'open_cycle', ERROR, last, 360.0 - covered,
+            f'the table covers {covered:.6g} of 360 deg', 'the cycle has no end',
+            'add the missing points; or state --cycle-length '
+            f'{table.angle[-1] * table.per_radian:.6g} if that is one cycle')
+
+
+def _ends(context: _Context) -> Iterator[Finding]:
+    """Find ends that do not close in position, velocity or acceleration."""
+    table = context.table
+    last = len(table.angle) - 1
+    if table.cycle == RETURN and abs(table.advance) > 1e-9 * table.stroke:
+        step = table.angle[-1] - table.angle[-2]
+        yield context.found(
+            'unequal_ends', WARNING, last, table.advance,
+            f'the last position differs from the first by {table.advance:.5g} {context.unit}',
+            f'a jump at every cycle: within one step of the table it is a velocity of '
+            f'{context.rate(table.advance / step, 1)} and an acceleration of '
+            f'{context.rate(table.advance / step**2, 2)}',
+            'make them equal, or --repair with a tolerance of at least '
+            f'{abs(table.advance) / 2.0:.3g}; --cycle accumulate for a belt')
+        return
+    for order, values in enumerate((table.velocity, table.acceleration), start=1):
+        if values is None:
+            continue
+        gap = float(values[0] - values[-1])
+        if abs(gap) > 1e-6 * float(np.abs(values).max()):
+            name = ('velocity', 'acceleration')[order - 1]
+            yield context.found(
+                f'unequal_end_{name}', WARNING, last, gap,
+                f'the {name} at the end differs from that at the start by {gap:.5g} '
+                f'{rate_text(context.unit, order, "rad")}',
+                f'a step of {context.rate(gap, order)} at every cycle',
+                'make both ends equal, or leave the column out')
+
+
+def _steps(context: _Context, steps: list[Break]) -> Iterator[Finding]:
+    table = context.table
+    kinks = [each for each in steps if each.kind == 'velocity_step']
+    bends = second_differences(table)
+    if not bends.values.size:
+        return
+    straight = np.abs(bends.values) <= 1e-6 * np.abs(bends.values).max() + bends.noise
+    flat = np.count_nonzero(~straight) <= 2 * len(kinks) + 2
+    if len(kinks) >= _STAIRS and flat:
+        worst = max(kinks, key=lambda each: abs(each.amount))
+        yield context.found(
+            'staircase', WARNING, worst.place, worst.amount,
+            f'straight lines with {len(kinks)} corners: the table was made by linear '
+            'interpolation of fewer points; the worst corner is a velocity step of '
+            f'{worst.amount:.5g} {rate_text(context.unit, 1, "rad")}',
+            f'a velocity step of {context.rate(worst.amount, 1)}: within one step of the table '
+            f'an acceleration of {context.rate(worst.amount / worst.step, 2)}',
+            'use the points it was made of, or --repair with a tolerance of about '
+            f'{abs(worst.amount) * worst.reach / 8.0:.2g}')
+        steps = [each for each in steps if each.kind != 'velocity_step']
+    for each in steps[:_MOST_FINDINGS]:
+        yield _step(context, each)
+    moving = table.stroke > 0.0 and not kinks
+    if table.interpolation == LINEAR and moving:
+        amounts = np.abs(bends.values * bends.steps)
+        place = int(np.argmax(amounts))
+        yield context.found(
+            'linear_interpolation', NOTE, int(bends.places[place]), float(amounts[place]),
+            'a controller that interpolates linearly makes steps of the velocity of up to '
+            f'{amounts[place]:.5g} {rate_text(context.unit, 1, "rad")} of it',
+            f'steps of {context.rate(amounts[place], 1)} at the points, acceleration in impulses',
+            'import it as a spline (as this program does), or give the controller more points')
+
+
+def _step(context: _Context, each: Break) -> Finding:
+    unit, amount, step = context.unit, each.amount, each.step
+    if each.kind == 'velocity_step':
+        return context.found(
+            'velocity_step', WARNING, each.place, amount,
+            f'the velocity steps by {amount:.5g} {rate_text(unit, 1, "rad")}',
+            f'a step of {context.rate(amount, 1)}: within one step of the table an acceleration '
+            f'of {context.rate(amount / step, 2)}',
+            'round the corner with further points, or --repair with a tolerance')
+    what = 'jump' if each.kind == 'jump' else 'outlier'
+    text = (f'the position jumps by {amount:.5g} {unit}' if what == 'jump' else
+            f'this position lies {amount:.5g} {unit} beside the curve of its neighbours')
+    hint = ('give the movement an angle of its own' if what == 'jump' else
+            f'correct the line, or leave it out: --drop {context.table.lines[each.place]}')
+    return context.found(
+        what, WARNING, each.place, amount, text,
+        f'within one step of the table a velocity of {context.rate(amount / step, 1)} and an '
+        f'acceleration of {context.rate(amount / step**2, 2)}', hint)
+
+
+def _spline(table: CamTable, x: Array, y: Array, degree: int) -> tuple[Array, Array]:
+    """Give velocity and acceleration at the points of a spline through them."""
+    closes = table.covers_cycle and len(x) > 3
+    curve = interpolate(x, y, degree, PERIODIC if closes else NATURAL)
+    return curve.evaluate(x, 1), curve.evaluate(x, 2)
+
+
+def _columns(context: _Context) -> Iterator[Finding]:
+    """Compare columns with the derivatives of the positions."""
+    table = context.table
+    if len(table.angle) < 6:
+        return
+    computed = _spline(table, table.angle, table.position, 5)
+    for order, given in enumerate((table.velocity, table.acceleration), start=1):
+        if given is None:
+            continue
+        name, own = ('velocity', 'acceleration')[order - 1], computed[order - 1]
+        peak = float(np.abs(own).max())
+        if peak == 0.0 or np.abs(given - own).max() <= _DIFFERS * order * peak:
+            continue
+        ratio = float(given @ own / (own @ own))
+        place = int(np.argmax(np.abs(given - own)))
+        rest = float(np.abs(given - ratio * own).max())
+        scale = abs(ratio) > 1e-12 and rest <= 3.0 * _DIFFERS * order * peak * abs(ratio)
+        meaning, hint = _scale(ratio, order, table) if scale else ('', 'leave the column out')
+        yield context.found(
+            f'{name}_contradicts', WARNING, place, float(given[place] - own[place]),
+            f'the {name} column is {ratio:.6g} times what the positions give{meaning}' if scale
+            else f'the {name} {given[place]:.5g} contradicts the positions, which give '
+            f'{own[place]:.5g} {rate_text(context.unit, order, "rad")}',
+            f'with it the curve swings between the points; at this one {name} is off by '
+            f'{context.rate(given[place] - own[place], order)}', hint)
+
+
+def _scale(ratio: float, order: int, table: CamTable) -> tuple[str, str]:
+    """Name the unit that a wrong factor shows."""
+    read_by = table.per_radian if table.per == 'master' else 1.0
+    for name, unit in (('per degree', DEGREE), ('per radian', 1.0), ('per cycle', TURN)):
+        factor = (read_by * unit) ** order
+        if not math.isclose(factor, 1.0, rel_tol=1e-3) and math.isclose(
+                ratio, factor, rel_tol=0.03):
+            hint = '--per rad' if name == 'per radian' else (
+                f'divide it by {factor:.6g}, or leave it out')
+            return f': it is {name}', hint
+    if math.isclose(ratio, -1.0, rel_tol=0.03):
+        return ': its sign is wrong', 'turn its sign, or leave it out'
+    return ': a wrong scale', f'divide it by {ratio:.6g}, or leave it out'
+
+
+def _coarse(context: _Context) -> Iterator[Finding]:
+    """Leave out every second point, and see what a spline makes of them."""
+    table = context.table
+    if table.stroke == 0.0 or table.velocity is not None:
+        return
+    kept = np.unique([*range(0, len(table.angle), 2), len(table.angle) - 1])
+    if len(kept) < 3:
+        miss, place, expected = table.stroke, 0, table.stroke
+    else:
+        x, y = table.angle[kept], table.position[kept]
+        closes = table.covers_cycle
+        curve = interpolate(x, y, 3, PERIODIC if closes else NATURAL)
+        misses = np.abs(curve.evaluate(table.angle) - table.position)
+        place = int(np.argmax(misses))
+        # halving the steps divides the error of a cubic spline by 16, where it is fine enough
+        miss = float(misses[place])
+        expected = miss / 16.0
+    if miss > _COARSE * table.stroke:
+        step = float(np.diff(table.angle).max())
+        yield context.found(
+            'too_few_points', WARNING, place, miss,
+            f'{len(table.angle)} points are too few: a spline through every second one misses '
+            f'the others by up to {miss:.4g} {context.unit}, '
+            f'{miss / table.stroke:.1%} of the stroke',
+            f'between the points the curve may be off by about {expected:.2g} {context.unit}, '
+            f'its acceleration by {context.rate(16.0 * expected / step**2, 2)}',
+            'export the table with at least twice as many points')
+
+
+def resolution_of(values: Array) -> float | None:
+    """
+    Find the power of ten to which numbers were rounded.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        The numbers.
+
+    Returns
+    -------
+    float | None
+        1, 0.1, 0.01 ...; None where they have all their digits.
+
+    """
+    for decimals in range(_MOST_DECIMALS + 1):
+        scaled = values * 10.0**decimals
+        if np.abs(scaled - np.round(scaled)).max() < 1e-6:
+            return float(10.0**-decimals)
+    return None
+
+
+def _rounded(context: _Context) -> Iterator[Finding]:
+    """See whether the rounding of the positions shows in the acceleration."""
+    table = context.table
+    resolution = resolution_of(table.position)
+    count = len(table.angle)
+    if resolution is None or table.stroke == 0.0 or count < 12 or table.interpolation == QUINTIC \
+            and table.acceleration is not None:
+        return
+    smoothed = smooth(table.angle, table.position, resolution, 5, table.covers_cycle)
+    bends = second_differences(table)
+    own = smoothed.curve.evaluate(np.clip(bends.angles, 0.0, table.angle[-1]), 2)
+    noise = np.abs(bends.values - own)
+    place = int(np.argmax(noise))
+    worst, peak = float(noise[place]), float(np.abs(own).max())
+    # what rounding can explain: half a unit at each of three points
+    explained = 2.0 * resolution / bends.steps[place] ** 2
+    if peak == 0.0 or worst <= _NOISE * peak or worst > 1.5 * explained:
+        return
+    third = worst / bends.steps[place]
+    yield context.found(
+        'rounded_positions', WARNING, int(bends.places[place]), worst,
+        f'positions are rounded to {resolution:g} {context.unit}: their second difference is '
+        f'off by up to {worst:.4g} {rate_text(context.unit, 2, "rad")}, {worst / peak:.0%} of '
+        'the peak acceleration',
+        f'noise of {context.rate(worst, 2)} in the acceleration, {context.rate(third, 3)} in the '
+        'jerk', f'export it with more digits, or --repair {resolution:g}')
