@@ -12,7 +12,7 @@ from glob import glob
 from setuptools import find_packages, setup
 
 package_name = 'cam_motion'
-nodes = ['master_shaft', 'cam_axis', 'drive_sim', 'bag_recorder', 'line']
+nodes = ['master_shaft', 'cam_axis', 'drive_sim', 'linkage_state', 'bag_recorder', 'line']
 
 setup(
     name=package_name,
@@ -25,21 +25,23 @@ setup(
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
-    package_data={package_name: ['py.typed', '**/*.yaml']},
+    package_data={package_name: ['py.typed', '**/*.html', '**/*.yaml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml', *glob('README.md')]),
         (f'share/{package_name}/config', sorted(glob('config/*.yaml'))),
-        (f'share/{package_name}/launch', sorted(glob('launch/*.py'))),
+        (f'share/{package_name}/launch', sorted(glob('launch/*'))),
         # What `ros2 run` and launch files start; each hands over to its namesake in bin/.
         (f'lib/{package_name}', sorted(glob('scripts/*'))),
     ],
     # No ROS package belongs here: package.xml names those.
     install_requires=[
+        'ezdxf',
         'lz4',
         'matplotlib',
         'mcap',
         'numpy',
+        'pillow',
         'PyYAML',
         'rich',
         'rosbags',
@@ -47,11 +49,14 @@ setup(
         'scipy',
         'zstandard',
     ],
-    extras_require={'test': ['distributed', 'hypothesis', 'pytest', 'pytest-timeout']},
+    extras_require={
+        'mp4': ['imageio-ffmpeg'],
+        'test': ['distributed', 'hypothesis', 'pytest', 'pytest-timeout'],
+    },
     entry_points={
         'console_scripts': [
             f'{package_name} = {package_name}.cli:main',
-            *(f'{node} = {package_name}.nodes.{node}:main' for node in nodes),
+            *(f'{node} = {package_name}.start:{node}' for node in nodes),
         ],
     },
     zip_safe=False,

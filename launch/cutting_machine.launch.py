@@ -48,6 +48,7 @@ def machine_nodes(context: LaunchContext) -> list[Node]:
     try:
         line = machine['line']['ros__parameters']
         axes, drives = line['axes'], line.get('drives', [])
+        linkages = line.get('linkages', [])
         # a drive that turns the shaft is the master
         turning = [name for name in drives if machine.get(name, {}).get(
             'ros__parameters', {}).get('mode') == 'line_shaft']
@@ -72,6 +73,7 @@ def machine_nodes(context: LaunchContext) -> list[Node]:
                'machine': ParameterValue(str(config), value_type=str)}
         nodes += [node('bag_recorder', 'bag_recorder', bag)]
     nodes += [node('drive_sim', name) for name in drives if name != master]
+    nodes += [node('linkage_state', name) for name in linkages]
     # The line is whole or it is not: it ends with the first axis, or with the master.
     nodes += [node('cam_axis', name, on_exit=Shutdown()) for name in axes]
     nodes += [node(executable, master, on_exit=Shutdown())]

@@ -14,14 +14,33 @@ from collections.abc import Sequence
 import os
 import sys
 
-from cam_motion.cli import change, check, laws, line, linkage, plot, record, report, simulate, size
+from cam_motion.cli import (
+    advise,
+    animate,
+    change,
+    check,
+    contour,
+    laws,
+    line,
+    linkage,
+    optimise,
+    plot,
+    record,
+    report,
+    simulate,
+    size,
+    table,
+)
 from cam_motion.cli.terminal import print_problems
 from cam_motion.errors import CamMotionError, ConfigurationError
 
 BAD_CONFIGURATION = 2
 """Exit code when what the user gave cannot be used."""
 
-_VERBS = (laws, check, plot, simulate, size, linkage, line, change, record, report)
+_VERBS = (
+    laws, advise, check, plot, optimise, simulate, size, linkage, contour, animate, line, change,
+    record, report, table,
+)
 
 
 def build_parser() -> argparse.ArgumentParser:

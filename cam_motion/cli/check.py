@@ -10,19 +10,22 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from typing import Any
 
 from cam_motion.cli.options import add_config, add_json, add_speed
 from cam_motion.cli.terminal import console, number, print_json, print_problems, row, speed, table
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.config import read_sections
+from cam_motion.io.contour import disc_text
 from cam_motion.io.linkage_data import range_text
-from cam_motion.io.summary import AxisSummary, bound_text, check_sections, CheckSummary
+from cam_motion.io.summary import AxisSummary, bound_text, check_sections, CheckSummary, SLACK
 from cam_motion.io.summary_data import check_as_data
+from cam_motion.motion.continuity import Continuity, Joint
 from cam_motion.motion.limits import QUANTITIES
-from cam_motion.units import rate_text, RPM
+from cam_motion.units import DEGREE, rate_text, RPM
 
-_SLACK = 1e-9  # how far (relative) a peak may exceed its limit by rounding, as in the check
+_DERIVATIVES = (*QUANTITIES, 'snap', '5th derivative', '6th derivative')
 
 
 def add_to(verbs: Any) -> None:
@@ -38,8 +41,10 @@ def add_to(verbs: Any) -> None:
     parser = verbs.add_parser(
         'check', help='check a machine file; peaks, and the highest speed',
         description='Check a machine file: every problem at once, the peaks of each segment at '
-                    'the set speed, and the highest speed within the limits of every axis. '
-                    'Exit code 2 if there is any problem.')
+                    'the set speed, the continuity class of each joint, and the highest speed '
+                    'within the limits of every axis. Exit code 2 if there is any problem.',
+        epilog='Class Ck: all derivatives up to order k run through. C0: the velocity steps, '
+               'which no cam may; C1: the acceleration does; C2: the jerk.')
     add_config(parser)
     add_speed(parser)
     add_json(parser)
@@ -76,6 +81,8 @@ def _print(check: CheckSummary, source: str) -> None:
     out = console()
     for axis in check.axes.values():
         _print_axis(axis, check.speed_cpm or 0.0)
+    for name, cams in check.stepping.items():
+        _print_joints(name, cams, 'unit', check.speed_cpm or 0.0)
     if check.axes:
         line = check.line_bound
         if line is None:
@@ -89,6 +96,8 @@ def _print(check: CheckSummary, source: str) -> None:
         _print_margins(check)
     for name, each in check.interlocks.items():
         out.print(f'interlock {name}: kept, {each.verdict.text}')
+    for name, disc in check.cam_discs.items():
+        out.print(f'cam disc {name}: {disc_text(disc)}')
     for name, settings in check.linkages.items():
         for variable in settings.linkage.inputs:
             out.print(f'linkage {name}, {range_text(settings, variable)}')
@@ -127,6 +136,39 @@ def _print_axis(summary: AxisSummary, speed_cpm: float) -> None:
         out.add_section()
         row(out, 'limit', '', '', '', '', *('' if x is None else number(x) for x in limits))
     console().print(out)
+    _print_joints(axis.name, summary.continuity, axis.unit, speed_cpm)
+    verdict = 'runs' if summary.runs_at(speed_cpm * RPM) else 'does not run'
+    console().print(f'{axis.name} {verdict} at {number(speed_cpm)} cycles/min\n')
+
+
+def _print_joints(axis: str, cams: Mapping[str, Continuity], unit: str, speed_cpm: float) -> None:
+    omega = speed_cpm * RPM
+    for cam, continuity in cams.items():
+        weakest = continuity.weakest
+        what = 'nothing steps' if weakest.order is None else (
+            f'the {_DERIVATIVES[weakest.order]} steps, '
+            f'first at {number(weakest.at / DEGREE)} deg')
+        out = table(
+            f'{axis if len(cams) == 1 else f"{axis}, {cam}"}: class {continuity.label}, {what}', [
+                ('joint', 'left'), ('at\ndeg', 'right'), ('class', 'left'), ('steps', 'left'),
+                ('by', 'right'), (f'at {number(speed_cpm)}\ncycles/min', 'right'),
+                ('inside the\nsegment', 'left')])
+        for each in continuity.joints:
+            joint, inside = each.joint, each.inside
+            row(out, f'{each.before.name} | {each.after.name}', number(joint.at / DEGREE),
+                joint.label, *_step(joint, unit, omega),
+                '' if inside is None else f'{inside.label} at {number(inside.at / DEGREE)}',
+                style='bold red' if joint.continuity < 1 else None)
+        console().print(out)
+
+
+def _step(joint: Joint, unit: str, omega: float) -> tuple[str, str, str]:
+    """Say what steps at a joint and by how much, per rad and at the set speed."""
+    if joint.order is None:
+        return '', '', ''
+    return (_DERIVATIVES[joint.order],
+            f'{number(joint.step, 4)} {rate_text(unit, joint.order, "rad")}',
+            f'{number(joint.step_at(omega), 4)} {rate_text(unit, joint.order)}')
 
 
 def _print_margins(check: CheckSummary) -> None:
@@ -141,5 +183,5 @@ def _print_margins(check: CheckSummary) -> None:
 
 def _figure(value: float, limit: float | None) -> str:
     """Write a peak, marked where it exceeds its limit."""
-    broken = limit is not None and abs(value) > limit * (1.0 + _SLACK)
+    broken = limit is not None and abs(value) > limit * (1.0 + SLACK)
     return ('! ' if broken else '') + number(value)

@@ -26,8 +26,10 @@ from cam_motion.cli.terminal import (
     table,
 )
 from cam_motion.io.plain import finite, plain
-from cam_motion.motion.laws import Coefficients, LAWS, LawType, make_law
+from cam_motion.motion.laws import Boundary, LAWS, LawType, make_law
 
+_LETTERS = {Boundary.REST: 'R', Boundary.CONSTANT_VELOCITY: 'V', Boundary.TURN: 'T',
+            Boundary.MOTION: 'M'}
 _WIDE = 150  # columns needed for coefficients and prose side by side, a law mostly on one line
 
 
@@ -71,27 +73,30 @@ def run(arguments: argparse.Namespace) -> int:
         print_json([_as_data(law) for law in LAWS.values()])
         return 0
     out = console()
-    # a narrow terminal gets what each law is as a list of its own
+    # a narrow terminal gets ends and what each law is as a list of its own
     wide = out.width >= _WIDE
-    prose = [('what it is', 'full')]
+    prose = [('ends', 'left'), ('what it is', 'full')]
     made = table(
         'Motion laws, normalised: lift 1 over span 1', [
             ('law', 'left'), ('Cv', 'right'), ('Ca', 'right'), ('Cj', 'right'),
             ('power', 'right'), ('RMS acc.', 'right'), *(prose if wide else []),
         ],
         'Real peaks for a lift h in a time T: velocity Cv h/T, acceleration\n'
-        "Ca h/T², jerk Cj h/T³. Power is max|s' s''|. Where the acceleration\n"
-        'steps, the jerk is infinite; in brackets the largest between the steps.\n'
-        'Laws with parameters are shown at their defaults.')
+        "Ca h/T², jerk Cj h/T³. Power is max|s' s''|. Where a law steps between\n"
+        'two dwells, what follows is infinite; in brackets the largest between\n'
+        'the steps. Ends: R rest, V constant velocity, T turn, M motion, and * for\n'
+        'any. Laws with parameters are shown at their defaults.')
     for law in LAWS.values():
         found = make_law(law.name).coefficients
-        row(made, law.name, number(found.cv), number(found.ca), _jerk(found),
-            number(found.power), number(found.rms_acceleration), *([_what(law)] if wide else []))
+        ca = _finite(found.ca, found.ca_inside) if wide else number(found.ca)
+        row(made, law.name, number(found.cv), ca, _finite(found.cj, found.cj_inside),
+            number(found.power), number(found.rms_acceleration),
+            *([_ends(law), _what(law)] if wide else []))
     out.print(made)
     if not wide:
         made = table('', [('law', 'left'), *prose])
         for law in LAWS.values():
-            row(made, law.name, _what(law))
+            row(made, law.name, _ends(law), _what(law))
         out.print(made)
     print_files(files)
     return 0
@@ -105,9 +110,12 @@ def _draw(path: Path) -> Path:
     return save_figure(laws_figure(shown), path)
 
 
-def _jerk(found: Coefficients) -> str:
-    text = number(found.cj)
-    return text + f' [{number(found.cj_inside)}]' if math.isinf(found.cj) else text
+def _finite(value: float, inside: float) -> str:
+    return f'∞ [{number(inside)}]' if math.isinf(value) else number(value)
+
+
+def _ends(law: LawType) -> str:
+    return '*' if law.any_ends else '-'.join(_LETTERS[end] for end in make_law(law.name).ends)
 
 
 def _what(law: LawType) -> str:

@@ -67,6 +67,8 @@ def add_to(verbs: Any) -> None:
                              'certificate too')
     parser.add_argument('-o', '--output', metavar='DIR', type=Path,
                         help='draw the motions of the machine file into this directory')
+    parser.add_argument('--urdf', metavar='FILE', type=Path,
+                        help='write a URDF whose joints are the published joint states')
     add_json(parser)
     parser.set_defaults(run=run)
 
@@ -99,8 +101,10 @@ def run(arguments: argparse.Namespace) -> int:
         raise ConfigurationError(problem.below('--at') for problem in error.problems) from error
     motion = move(settings.assembly, pose, inputs.rates, inputs.accelerations)
     files = [] if arguments.output is None else _draw(settings, arguments.output)
+    if arguments.urdf is not None:
+        files.append(_write_urdf(settings, arguments.urdf))
     if arguments.json:
-        written = {} if arguments.output is None else {'files': [str(file) for file in files]}
+        written = {'files': [str(file) for file in files]} if files else {}
         print_json({**motion_as_data(settings, motion, arguments.all), **written})
         return 0
     _print(settings, motion)
@@ -151,6 +155,17 @@ def _draw(settings: LinkageSettings, folder: Path) -> list[Path]:
             file = re.sub(r'\W', '_', f'linkage_{settings.name}_{name}') + '.png'
             files.append(save_figure(linkage_figure(settings, case), folder / file))
     return files
+
+
+def _write_urdf(settings: LinkageSettings, file: Path) -> Path:
+    from cam_motion.io.linkage_urdf import linkage_urdf
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(linkage_urdf(settings), encoding='utf-8')
+    except OSError as error:
+        raise ConfigurationError([Problem(
+            '--urdf', str(file), f'cannot be written: {error.strerror}')]) from error
+    return file
 
 
 def _rounded(value: float) -> float:

@@ -25,6 +25,7 @@ REFRESH = 0.2
 """Time between two looks [s]."""
 
 _ORDINARY = 'in_sync'  # a state not worth a word on a plain line
+_FOLLOWS = 'following'  # of a linkage likewise
 _LINE_EVERY = 1.0  # plain lines come slower [s]
 
 
@@ -140,7 +141,12 @@ def render(machine: Machine, seen: Snapshot, title: str, note: str = '') -> Grou
         row(made, name, *_pair(motion, unit, rate_text(unit, 1), 4), seen.states.get(name, ''))
     for name, effort in seen.drives.items():
         row(made, name, *_pair(effort, 'N m', 'rpm', 1), '')
-    return Group(made, Text(_health_text(seen)))
+    held = []
+    for name in machine.linkages:
+        state, _, reason = seen.states.get(name, 'waiting').partition(':')
+        row(made, name, '', '', '', '', state)
+        held += [Text(f'{name}:{reason}')] if reason else []
+    return Group(made, *held, Text(_health_text(seen)))
 
 
 def _pair(values: tuple[float, float] | None, first: str, second: str, places: int,
@@ -174,7 +180,7 @@ def plain_line(machine: Machine, seen: Snapshot) -> str:
     Returns
     -------
     str
-        Time, shaft, axes, drives, ticks missed.
+        Time, shaft, axes, drives, linkages that do not follow, ticks missed.
 
     """
     parts = [
@@ -188,4 +194,6 @@ def plain_line(machine: Machine, seen: Snapshot) -> str:
                                *([state] if state != _ORDINARY else []))))
     parts += [' '.join((name, *_pair(effort, 'N m', 'rpm', 1)))
               for name, effort in seen.drives.items()]
+    parts += [f'{name} {state}' for name in machine.linkages
+              if (state := seen.states.get(name, 'waiting')) != _FOLLOWS]
     return '  '.join((*parts, _health_text(seen)))

@@ -43,6 +43,8 @@ def print_report(report: Report) -> None:
     out.print(_peaks_table(report))
     if report.drives:
         out.print(_drives_table(report))
+    if report.linkages:
+        out.print(_linkages_table(report))
     out.print(_messages_table(report))
     for note in notes(report):
         out.print(f'note: {note}')
@@ -100,6 +102,21 @@ def _drives_table(report: Report) -> Table:
             unit = machine.diagram.axes[machine.drives[name].axis].unit
             cells.append(f'{number(drive.following_error)} {unit}')
         row(made, name, str(drive.states), *cells, *[''] * (3 + followed - len(cells)))
+    return made
+
+
+def _linkages_table(report: Report) -> Table:
+    made = table('linkages', [
+        ('linkage', 'left'), ('states', 'right'), ('loops closed\nwithin m', 'right'),
+        ('input', 'left'), ('from', 'right'), ('to', 'right'), ('', 'left')])
+    for name, linkage in report.linkages.items():
+        described = report.recording.machine.linkages[name].linkage
+        cells = [name, str(linkage.states), number(linkage.gap, 2)]
+        for variable, ends in linkage.travel.items():
+            row(made, *cells, variable, *map(number, ends), described.unit(variable))
+            cells = [''] * 3
+        if not linkage.travel:
+            row(made, *cells, '', '', '', '')
     return made
 
 

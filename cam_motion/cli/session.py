@@ -15,7 +15,7 @@ from threading import Event
 from time import monotonic, sleep
 from typing import Any
 
-from cam_motion.cli.child import Child, recorder, START_WITHIN, STOP_WITHIN
+from cam_motion.cli.child import Child, node, recorder, START_WITHIN, STOP_WITHIN
 from cam_motion.cli.live import Display, REFRESH
 from cam_motion.cli.watch import LineWatch, Snapshot
 from cam_motion.errors import CamMotionError
@@ -84,7 +84,7 @@ class Session:
         held_back = self._recorder is not None and master.values['run_at_start']
         if held_back:
             arguments += ['-p', f'{master.name}:run_at_start:=false']
-        self._line = Child('cam_motion.nodes.line', arguments, self._display.printer)
+        self._line = node('line', arguments, self._display.printer)
         if held_back:
             self._await_bag(self._line, given.record)
             if not (self._asked.is_set() or self._line.ended):

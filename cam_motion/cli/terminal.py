@@ -20,6 +20,7 @@ from cam_motion.errors import CamMotionError, Problem
 from cam_motion.io.plain import to_json
 from cam_motion.units import RPM
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
@@ -30,6 +31,28 @@ if TYPE_CHECKING:
 
 # Files and pipes have no width: wide enough for every table without folding.
 _WIDTH_OF_A_FILE = 120
+
+
+class _Output(Console):
+    """A console that never cuts the figures of a table: a narrow terminal folds its lines."""
+
+    def print(self, *objects: Any, **options: Any) -> None:  # noqa: A003 (as rich names it)
+        before = self.width
+        self.width = max(before, *map(_least_width, objects), 0)
+        try:
+            super().print(*objects, **options)
+        finally:
+            self.width = before
+
+
+def _least_width(thing: object) -> int:
+    """Find the width that a table needs for its figures; prose is folded to a few words."""
+    if not isinstance(thing, Table):
+        return 0
+    return 2 * len(thing.columns) + 1 + sum(
+        max(max(map(cell_len, str(cell).split('\n' if column.no_wrap else None)), default=0)
+            for cell in (column.header, *column.cells))
+        for column in thing.columns)
 
 
 def console(stderr: bool = False) -> Console:
@@ -49,7 +72,7 @@ def console(stderr: bool = False) -> Console:
     """
     stream = sys.stderr if stderr else sys.stdout
     width = None if stream.isatty() or 'COLUMNS' in os.environ else _WIDTH_OF_A_FILE
-    return Console(file=stream, width=width, markup=False, highlight=False, emoji=False)
+    return _Output(file=stream, width=width, markup=False, highlight=False, emoji=False)
 
 
 def print_json(data: Any) -> None:

@@ -41,7 +41,7 @@ class Snapshot:
     axes : Mapping[str, tuple[float, float] | None]
         Position and velocity by axis [unit, unit/s].
     states : Mapping[str, str]
-        State by axis; of those only that have told theirs.
+        State by axis and linkage; of those only that have told theirs.
     drives : Mapping[str, tuple[float, float] | None]
         Motor torque [N m] and motor speed [rpm] by drive.
     health : Mapping[str, str]
@@ -196,7 +196,8 @@ def _subscribe(node: Any, machine: Machine) -> dict[tuple[str, str], Any]:
         ('diagnostics', '', DiagnosticArray, '/diagnostics', several),
         *(('axis', name, JointTrajectoryPoint, f'{name}/setpoint', newest)
           for name in machine.diagram.axes),
-        *(('state', name, String, f'{name}/state', latched) for name in machine.diagram.axes),
+        *(('state', name, String, f'{name}/state', latched)
+          for name in (*machine.diagram.axes, *machine.linkages)),
         *(('drive', name, JointState, f'{name}/drive_state', newest)
           for name in machine.drive_names),
     ]

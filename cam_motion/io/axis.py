@@ -17,11 +17,14 @@ from typing import Any
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import axis_parameters
 from cam_motion.io.parameters import check_values, ParameterSpec
+from cam_motion.io.shaping import take_shaping
 from cam_motion.io.tracks import take_tracks, track_table, TrackSettings
+from cam_motion.motion.continuity import Continuity, program_continuity
 from cam_motion.motion.diagram import Axis
 from cam_motion.motion.laws import make_law
+from cam_motion.motion.laws.with_points import lift_of, SPLINE
 from cam_motion.motion.limits import Limits, QUANTITIES, SpeedBound
-from cam_motion.motion.profile import CamProfile, program_problems
+from cam_motion.motion.profile import CamProfile, program_problems, VelocityStepError
 from cam_motion.motion.segment import Segment
 from cam_motion.runtime.follower_settings import FollowerSettings
 from cam_motion.runtime.layout import Coupling, Layout
@@ -210,6 +213,12 @@ def build_axis(name: str, given: Values) -> CoupledAxis:
         problems.append(Problem('follows', name, 'an axis cannot follow itself'))
     limits, wrong = _limits(values)
     problems += wrong
+    shaping, wrong = take_shaping(values, values['follows'] == axis_parameters.SHAFT)
+    problems += [new for new in wrong if new.path not in {problem.path for problem in problems}]
+    if shaping is not None and not problems:
+        profiles, wrong = shaping.shaped(
+            profiles, {cam: each.ratio for cam, each in couplings.items()})
+        problems += wrong
     if not problems:
         layout = Layout(profiles, couplings, active)
         try:
@@ -220,6 +229,35 @@ def build_axis(name: str, given: Values) -> CoupledAxis:
         raise ConfigurationError(problems)
     return CoupledAxis(name, profiles[active[0]], values['unit'], limits, layout=layout,
                        settings=_settings(values, limits), values=values, tracks=tracks)
+
+
+def stepping_cams(given: Values) -> dict[str, Continuity]:
+    """
+    Find the cams of an axis with which nothing is wrong but that their velocity steps.
+
+    Parameters
+    ----------
+    given : Mapping[str, Any]
+        Parameters of the axis by flat name.
+
+    Returns
+    -------
+    dict[str, Continuity]
+        Their joints, by cam.
+
+    """
+    names = names_in(given, 'cams')
+    given, _, _ = take_tracks(
+        given, axis_parameters.CAM_AXIS, [*names, *names_in(given, 'segments')], of_axis=True)
+    found = {}
+    for cam, section in (split_below(given, names)[1] if names else {ONLY_CAM: given}).items():
+        try:
+            _build_cam(section)
+        except VelocityStepError as error:
+            found[cam] = program_continuity(error.segments)
+        except ConfigurationError:
+            continue  # whoever builds the axis tells what is wrong
+    return found
 
 
 def _twice(key: str, names: Iterable[str]) -> list[Problem]:
@@ -318,7 +356,9 @@ def _build_segment(name: str, given: Values) -> tuple[Segment, list[Problem]]:
         law = make_law(values['law'], **{k: v for k, v in given.items() if k not in fixed})
     except ConfigurationError as error:
         problems += error.problems
-    if values['law'] != 'dwell' and 'lift' not in given:
+    if law.name == SPLINE and 'lift' not in given and law.parameters['positions']:
+        values['lift'] = lift_of(law.parameters)
+    elif values['law'] != 'dwell' and 'lift' not in given:
         problems.append(Problem('lift', None, 'a segment with a law needs a lift'))
     wrong = {problem.path for problem in problems}
     end_deg, lift = (

@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 from cam_motion.io.parameters import AUTOSTART, ParameterSpec, REQUIRED, TRACKS
+from cam_motion.io.shaping_parameters import SHAPING
 from cam_motion.io.track_parameters import TRAJECTORY
 
 SHAFT = 'shaft'
@@ -105,6 +106,7 @@ CAM_AXIS = (
                   'must stop while the shaft goes on, or the shaft has fallen silent; the same '
                   'for all axes that are to stop together.', 'rad/s²', above=0.0),
     ParameterSpec('stop_jerk', 'double', 3000.0, 'Jerk of that stop.', 'rad/s³', above=0.0),
+    *SHAPING,
     TRACKS,
     *TRAJECTORY,
     AUTOSTART,

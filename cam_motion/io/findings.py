@@ -42,6 +42,9 @@ def findings(report: Report) -> list[str]:
             found.append(f'{name}: the bag has no setpoints of it')
     for name, axis in report.axes.items():
         found += [f'{name}: {text}' for text in _axis_findings(axis)]
+    found += [f'{name}: its loops fail to close by {linkage.gap:.3g} m, and open at '
+              f'{linkage.slip:.3g} m/s' for name, linkage in report.linkages.items()
+              if not linkage.sound]
     return found
 
 
@@ -108,7 +111,10 @@ def notes(report: Report) -> list[str]:
                 unit = rate_text(axis.axis.unit, order)
                 found.append(f'{name}: {QUANTITIES[order]} reached {peak:.6g} {unit}, beyond its '
                              f'limit of {limit:g} {unit}')
-    missing = [name for name in recording.machine.drive_names if name not in report.drives]
+    missing = [
+        *(name for name in recording.machine.drive_names if name not in report.drives),
+        *(name for name in recording.machine.linkages
+          if name not in report.linkages or not report.linkages[name].states)]
     found += [f'{name}: the bag has no states of it' for name in missing]
     return found
 

@@ -52,7 +52,7 @@ STAGED = (
 
 _OF_A_FORMAT = (
     *(spec.name for spec in CAM), 'cams', 'active', 'limits', 'shaft_acceleration', 'shaft_jerk',
-    'engage_at_start', 'start_position', *TRANSITIONS)
+    'engage_at_start', 'start_position', 'shaping', *TRANSITIONS)
 
 
 def is_of_a_format(name: str) -> bool:

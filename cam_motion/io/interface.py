@@ -57,8 +57,8 @@ INTERFACE = (
              'latched: the highest shaft speed that its limits allow now; inf: no limit, or the '
              'axis follows another one'),
     Endpoint('cam_axis', 'subscribes', 'format_change', 'std_msgs/msg/Float64',
-             'shaft angle [rad], never wrapped: told once, every axis with a staged format answers '
-             'whether it is ready; told again, it goes over there; NaN revokes'),
+             'shaft angle [rad], never wrapped: told once, every axis with a staged format '
+             'answers whether it is ready; told again, it goes over there; NaN revokes'),
     Endpoint('cam_axis', 'publishes', '~/format_change', 'std_msgs/msg/Float64',
              'latched: the angle for which the axis is ready; NaN: none'),
     Endpoint('cam_axis', 'serves', '~/engage', 'std_srvs/srv/SetBool',
@@ -87,6 +87,15 @@ INTERFACE = (
              'motor off, brake on; stays stopped until reset'),
     Endpoint('drive_sim: line_shaft', 'serves', '~/reset', 'std_srvs/srv/Trigger',
              'acknowledge a quick stop; the brake holds until the next run'),
+    Endpoint('linkage_state', 'subscribes', '<axis>/setpoint', _POINT,
+             'every axis that drives an input; points with the same time_from_start belong '
+             'together'),
+    Endpoint('linkage_state', 'publishes', '~/joint_states', _JOINTS,
+             'per tick, or joint_states_hz: every input and unknown by name (rad, m), then '
+             '<body>_x and <body>_y of the moving bodies, for the URDF; efforts that hold loads'),
+    Endpoint('linkage_state', 'publishes', '~/markers', 'visualization_msgs/msg/MarkerArray',
+             'markers_hz: links, slides, joints, names, velocity arrows; links in red while the '
+             'inputs are out of range'),
     Endpoint('all', 'publishes', '~/state', 'std_msgs/msg/String', 'latched: what the node does'),
     Endpoint('all', 'publishes', '/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray',
              'health and figures, once a second'),

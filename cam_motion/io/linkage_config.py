@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 import math
 from typing import Any
 
@@ -63,6 +63,27 @@ class LinkageCase:
 
 
 @dataclass(frozen=True)
+class InputDrive:
+    """
+    What an axis makes of an input: offset + factor · position of the axis.
+
+    Attributes
+    ----------
+    axis : str
+        Name of the axis.
+    factor : float
+        Change of the input per unit of the axis: the radius of a spool, else 1.
+    offset : float
+        The input where the axis is at zero [m, rad]: with a spool the start, else 0.
+
+    """
+
+    axis: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
 class LinkageSettings:
     """
     A linkage with what a machine file says of it.
@@ -77,6 +98,12 @@ class LinkageSettings:
         Radius of the spool that winds an input, by input [m].
     cases : Mapping[str, LinkageCase]
         Motions to look at.
+    values : Mapping[str, Any]
+        Every parameter of the section itself, checked.
+    drives : Mapping[str, InputDrive]
+        The axes that drive inputs, by input; other inputs stay at the start.
+    forces : Mapping[str, complex]
+        Forces on points that the inputs hold, x + j y, by point [N].
 
     """
 
@@ -84,11 +111,19 @@ class LinkageSettings:
     assembly: Assembly
     spools: Mapping[str, float]
     cases: Mapping[str, LinkageCase]
+    values: Values = field(default_factory=dict)
+    drives: Mapping[str, InputDrive] = field(default_factory=dict)
+    forces: Mapping[str, complex] = field(default_factory=dict)
 
     @property
     def linkage(self) -> Linkage:
         """Give the linkage itself."""
         return self.assembly.linkage
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """List the axes that drive inputs, each once."""
+        return tuple(dict.fromkeys(drive.axis for drive in self.drives.values()))
 
 
 def linkage_names(sections: Mapping[str, Values]) -> list[str]:
@@ -185,10 +220,10 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
         every += listed
     own, below = split_below(given, every)
     values, wrong = check_values(tables.LINKAGE, own)
-    if any(problem.path in taken for problem in wrong):  # names of parts are not all known
+    if any(problem.path in tables.PARTS for problem in wrong):  # not all names are known
         wrong = [problem for problem in wrong if problem.path in taken]
     problems += wrong
-    if problems:
+    if any(problem.path in tables.PARTS for problem in problems):
         raise ConfigurationError(problems)
     parts: dict[str, dict[str, dict[str, Any]]] = {}
     for kind, table in tables.PARTS.items():
@@ -211,7 +246,11 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
     linkage = _linkage(name, parts, start)
     spools = {each: variable['spool_radius'] for each, variable in parts['inputs'].items()
               if variable['spool_radius'] is not None}
-    settings = LinkageSettings(name, Assembly(linkage), spools, {})
+    drives = {each: InputDrive(variable['axis'], spools.get(each, 1.0),
+                               start[each] if each in spools else 0.0)
+              for each, variable in parts['inputs'].items() if variable['axis'] is not None}
+    forces, problems = _forces(parts['loads'], parts['points'])
+    settings = LinkageSettings(name, Assembly(linkage), spools, {}, values, drives, forces)
     cases = {}
     for each in names['motions']:
         try:
@@ -220,7 +259,7 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
             problems += [problem.below(each) for problem in error.problems]
     if problems:
         raise ConfigurationError(problems)
-    return LinkageSettings(name, settings.assembly, spools, cases)
+    return replace(settings, cases=cases)
 
 
 def read_inputs(settings: LinkageSettings, given: Mapping[str, float]) -> LinkageInputs:
@@ -297,6 +336,20 @@ def _case(settings: LinkageSettings, name: str, given: Values) -> LinkageCase:
         raise ConfigurationError([Problem(
             'duration', duration, f'on the way {error}', 'stop before it')]) from error
     return case
+
+
+def _forces(loads: Mapping[str, Mapping[str, Any]], points: Mapping[str, Any],
+            ) -> tuple[dict[str, complex], list[Problem]]:
+    """Add up the forces on each point."""
+    forces: dict[str, complex] = {}
+    problems = []
+    for name, load in loads.items():
+        point = load['point']
+        if point not in points:
+            problems.append(Problem(f'{name}.point', point, 'must be a point of the linkage',
+                                    'known are: ' + ', '.join(points)))
+        forces[point] = forces.get(point, 0.0) + complex(load['force_x'], load['force_y'])
+    return forces, problems
 
 
 def _start(variables: Mapping[str, Mapping[str, Any]], angles: list[str | None],

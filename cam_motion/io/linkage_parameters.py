@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from cam_motion.io.parameters import ParameterSpec, REQUIRED
+from cam_motion.io.parameters import AUTOSTART, ParameterSpec, REQUIRED
 
 TYPE = 'linkage'
 """Value of ``type`` that makes a section the description of a linkage."""
@@ -26,18 +26,37 @@ LINKAGE = (
     ParameterSpec('loops', 'string_list', REQUIRED, 'Names of the closed ways.'),
     ParameterSpec('points', 'string_list', [], 'Names of the points of interest.'),
     ParameterSpec('transmissions', 'string_list', [], 'Names of the transmission angles.'),
+    ParameterSpec('loads', 'string_list', [],
+                  'Names of the forces on points, which the inputs hold.'),
     ParameterSpec('motions', 'string_list', [], 'Names of the motions to draw.'),
+    ParameterSpec('joint_states_hz', 'double', 0.0,
+                  'How often the joint states are published; 0: at every tick.', 'Hz', least=0.0,
+                  most=5000.0),
+    ParameterSpec('markers_hz', 'double', 30.0,
+                  'How often the markers are published; 0: at every tick.', 'Hz', least=0.0,
+                  most=5000.0),
+    ParameterSpec('frame_id', 'string', 'world', 'Frame of the markers and root of the URDF.'),
+    ParameterSpec('velocity_scale', 'double', 0.2,
+                  'Length of a velocity arrow per m/s; 0: no arrows.', 's', least=0.0, most=1e3),
+    AUTOSTART,
 )
 
-_VARIABLE = (
+_UNKNOWN = (
     ParameterSpec('start', 'double', None,
                   'Value that names the branch, of an unknown roughly.', 'm, rad', least=-1e6,
                   most=1e6),
     ParameterSpec('start_deg', 'double', None, 'The same of an angle.', 'deg', least=-36000.0,
                   most=36000.0),
+)
+
+_INPUT = (
+    *_UNKNOWN,
+    ParameterSpec('axis', 'string', None,
+                  'The axis whose position it is, or that turns the crank of its spool; none: it '
+                  'stays at the start.'),
     ParameterSpec('spool_radius', 'double', None,
-                  'Radius of the spool that lets out a length, turned by a crank.', 'm',
-                  above=0.0, most=1e3),
+                  'Radius of the spool that lets out a length from the start on, turned by a '
+                  'crank.', 'm', above=0.0, most=1e3),
 )
 
 MOTION = (
@@ -46,8 +65,8 @@ MOTION = (
 )
 
 PARTS: dict[str, tuple[ParameterSpec, ...]] = {
-    'inputs': _VARIABLE,
-    'unknowns': _VARIABLE[:2],
+    'inputs': _INPUT,
+    'unknowns': _UNKNOWN,
     'bodies': (
         ParameterSpec('angle', 'string', REQUIRED, 'The variable that is its angle.'),
     ),
@@ -70,6 +89,11 @@ PARTS: dict[str, tuple[ParameterSpec, ...]] = {
     'transmissions': tuple(
         ParameterSpec(end, 'string_list', REQUIRED, 'Vectors whose sum is one direction.')
         for end in ('first', 'second')),
+    'loads': (
+        ParameterSpec('point', 'string', REQUIRED, 'The point that the force acts on.'),
+        ParameterSpec('force_x', 'double', 0.0, 'Its part along x.', 'N'),
+        ParameterSpec('force_y', 'double', 0.0, 'Its part along y.', 'N'),
+    ),
     'motions': MOTION,
 }
 """What stands below the names in each list."""

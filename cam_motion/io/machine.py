@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,6 +22,9 @@ from cam_motion.io.axis import build_axis, Values
 from cam_motion.io.axis_limits import in_cascade, speed_problems
 from cam_motion.io.cam_drive_config import build_cam_drive, cam_on_shaft, CamDriveSettings
 from cam_motion.io.interlocks import build_interlocks, judge, JudgedInterlock, line_values
+from cam_motion.io.line_parts import guess_line, rival_problems, shaft_drives
+from cam_motion.io.linkage_config import LinkageSettings
+from cam_motion.io.linkage_line import build_linkages_of
 from cam_motion.io.parameters import check_values
 from cam_motion.io.servo_config import build_motor, build_servo, SERVO, ServoSettings
 from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO_DRIVE
@@ -30,9 +33,6 @@ from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.units import RPM
-
-LINE_SHAFT = 'line_shaft'
-"""Mode of a drive that turns a cam shaft, against one that follows an axis."""
 
 
 @dataclass(frozen=True)
@@ -161,6 +161,8 @@ class Machine:
         The drives that turn a cam shaft, by name.
     interlocks : Mapping[str, JudgedInterlock]
         What axes must never do at once, by name, and by how much that is kept.
+    linkages : Mapping[str, LinkageSettings]
+        The linkages that axes drive, by name.
 
     """
 
@@ -169,6 +171,7 @@ class Machine:
     drives: Mapping[str, DriveSettings]
     cam_drives: Mapping[str, CamDriveSettings]
     interlocks: Mapping[str, JudgedInterlock] = field(default_factory=dict)
+    linkages: Mapping[str, LinkageSettings] = field(default_factory=dict)
 
     @property
     def drive_names(self) -> tuple[str, ...]:
@@ -292,15 +295,16 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
     line, wrong = line_values(given)
     problems += [problem.below('line') for problem in wrong]
     turning = shaft_drives(sections, line['drives'])
-    named = [*line['axes'], *line['drives'], *({line['master']} - set(turning))]
+    named = [*line['axes'], *line['drives'], *line['linkages'],
+             *({line['master']} - set(turning))]
     problems += [
         Problem(f'line.{key}', name, 'every node has a name of its own')
-        for key in ('axes', 'drives') for name in dict.fromkeys(line[key])
+        for key in ('axes', 'drives', 'linkages') for name in dict.fromkeys(line[key])
         if named.count(name) > 1
     ]
     if not line['axes'] and not wrong:
         problems.append(Problem('line.axes', [], 'a line needs at least one axis'))
-    problems += _rival_problems(sections, line['master'], turning)
+    problems += rival_problems(sections, line['master'], turning)
     axes = in_cascade({
         name: build(build_axis, name, 'axis') for name in dict.fromkeys(line['axes'])}, problems)
     drives, cam_drives = {}, {}
@@ -328,6 +332,8 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
     if master is not None and limited:
         speed = master.top_speed
         problems += [problem for axis in limited for problem in speed_problems(axis, speed)]
+    linkages, wrong = build_linkages_of(line, sections, axes)
+    problems += wrong
     interlocks, wrong = build_interlocks(given, axes)
     problems += [problem.below('line') for problem in wrong]
     sound = {name: axis for name, axis in axes.items() if axis is not None}
@@ -337,64 +343,4 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
                  for name, each in judged.items() if not each.verdict.kept]
     if problems or master is None:
         raise ConfigurationError(problems)
-    return Machine(master, TimingDiagram(sound), drives, cam_drives, judged)
-
-
-def shaft_drives(sections: Mapping[str, Values], drives: Iterable[str]) -> list[str]:
-    """
-    Find the drives that turn the shaft themselves.
-
-    Parameters
-    ----------
-    sections : Mapping[str, Mapping[str, Any]]
-        Parameters of every node.
-    drives : Iterable[str]
-        Names of the drives of the line.
-
-    Returns
-    -------
-    list[str]
-        Names; more than one make no machine.
-
-    """
-    return [name for name in dict.fromkeys(drives)
-            if sections.get(name, {}).get('mode') == LINE_SHAFT]
-
-
-def _rival_problems(sections: Mapping[str, Values], master: str, turning: list[str],
-                    ) -> list[Problem]:
-    """Find whatever would turn the shaft beside the drive that does."""
-    problems = []
-    if len(turning) > 1:
-        problems.append(Problem(
-            'line.drives', turning, f'one drive with mode {LINE_SHAFT} turns the shaft, no more',
-            'let the others follow an axis, or make a line of each'))
-    if turning and master in sections and master not in turning:
-        problems.append(Problem(
-            master, 'a master shaft', f'{turning[0]} turns the shaft: nothing else may',
-            'leave this section out, or give the drive another mode'))
-    return problems
-
-
-def guess_line(sections: Mapping[str, Values]) -> Values:
-    """
-    Make up the section of the line where a file has none, from what the others hold.
-
-    Parameters
-    ----------
-    sections : Mapping[str, Mapping[str, Any]]
-        Parameters of every node.
-
-    Returns
-    -------
-    Mapping[str, Any]
-        Names of the axes (sections with segments), drives (with an axis) and of the master.
-
-    """
-    masters = [name for name, values in sections.items() if 'speed_cpm' in values]
-    return {
-        'master': masters[0] if masters else 'master_shaft',
-        'axes': [name for name, values in sections.items() if 'segments' in values],
-        'drives': [name for name, values in sections.items()
-                   if 'axis' in values and 'segments' not in values],
-    }
+    return Machine(master, TimingDiagram(sound), drives, cam_drives, judged, linkages)

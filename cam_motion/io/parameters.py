@@ -250,6 +250,7 @@ LINE = (
     ParameterSpec('master', 'string', 'master_shaft', 'Name of the master shaft.'),
     ParameterSpec('axes', 'string_list', [], 'Names of the axes.'),
     ParameterSpec('drives', 'string_list', [], 'Names of the drives.'),
+    ParameterSpec('linkages', 'string_list', [], 'Names of the linkages that axes drive.'),
     ParameterSpec('interlocks', 'string_list', [],
                   'Names of the interlocks; what each of them is stands below its name.'),
     AUTOSTART,

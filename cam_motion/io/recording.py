@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cam_motion.errors import CamMotionError, ConfigurationError, Problem
+from cam_motion.io.axis import Values
 from cam_motion.io.bag import (
     BagReader,
     JointStateSeries,
@@ -116,6 +117,10 @@ class Recording:
         What the axes really did, by servo drive.
     states : Mapping[str, Sequence[tuple[int, str]]]
         (Time of reception [ns], state) as each axis told them.
+    linkages : Mapping[str, JointStateSeries]
+        States of the linkages, by linkage: every variable, and more.
+    sections : Mapping[str, Mapping[str, Any]]
+        Parameters of every node, as the machine file has them.
 
     """
 
@@ -130,6 +135,8 @@ class Recording:
     master_health: Mapping[str, str]
     actual: Mapping[str, Track] = field(default_factory=dict)
     states: Mapping[str, Sequence[tuple[int, str]]] = field(default_factory=dict)
+    linkages: Mapping[str, JointStateSeries] = field(default_factory=dict)
+    sections: Mapping[str, Values] = field(default_factory=dict)
 
 
 def read_recording(path: Path, config: Path | None = None) -> Recording:
@@ -159,7 +166,8 @@ def read_recording(path: Path, config: Path | None = None) -> Recording:
 
     """
     with BagReader(path) as reader:
-        machine = _machine(reader, config)
+        sections = _sections(reader, config)
+        machine = build_machine(sections)
         namespace, shaft = _shaft(reader)
 
         def topic(name: str) -> str | None:
@@ -182,18 +190,21 @@ def read_recording(path: Path, config: Path | None = None) -> Recording:
              if (found := topic(f'{name}/actual'))},
             {axis: [(stamp, str(reader.decode(_TEXT, raw).data))
                     for _, stamp, raw in reader.messages(found)]
-             for axis in machine.diagram.axes if (found := topic(f'{axis}/state'))})
+             for axis in machine.diagram.axes if (found := topic(f'{axis}/state'))},
+            {name: read_joint_states(reader, found) for name in machine.linkages
+             if (found := topic(f'{name}/joint_states'))},
+            sections)
 
 
-def _machine(reader: BagReader, config: Path | None) -> Machine:
+def _sections(reader: BagReader, config: Path | None) -> Mapping[str, Values]:
     if config is not None:
-        return build_machine(read_sections(config))
+        return read_sections(config)
     text = reader.custom_data.get(MACHINE_KEY)
     if not text:
         raise ConfigurationError([Problem(
             str(reader.path), None, 'the bag carries no machine file to compare with',
             'give it with --config')])
-    return build_machine(parse_sections(text, f'{reader.path}: {MACHINE_KEY}'))
+    return parse_sections(text, f'{reader.path}: {MACHINE_KEY}')
 
 
 def _shaft(reader: BagReader) -> tuple[str, Track]:

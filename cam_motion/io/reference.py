@@ -20,9 +20,12 @@ import re
 import sys
 
 from cam_motion.io.axis_parameters import CAM, CAM_AXIS, SEGMENT
+from cam_motion.io.cam_disc_parameters import CAM_DISC, SWING_PARTS
 from cam_motion.io.cam_drive_parameters import CAM_DRIVE, PARTS
 from cam_motion.io.format_parameters import INTERLOCK, STAGED
 from cam_motion.io.interface import INTERFACE
+from cam_motion.io.linkage_parameters import LINKAGE
+from cam_motion.io.linkage_parameters import PARTS as LINKAGE_PARTS
 from cam_motion.io.parameters import (
     BAG_RECORDER,
     DRIVE_SIM,
@@ -39,7 +42,7 @@ _BLOCK = re.compile(r'(<!-- generated: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL
 
 TABLES: dict[str, tuple[ParameterSpec, ...]] = {
     'master_shaft': MASTER_SHAFT, 'cam_axis': CAM_AXIS, 'cam': CAM, 'segment': SEGMENT,
-    'drive_sim': DRIVE_SIM, 'bag_recorder': BAG_RECORDER, 'line': LINE,
+    'drive_sim': DRIVE_SIM, 'linkage_state': LINKAGE, 'bag_recorder': BAG_RECORDER, 'line': LINE,
 }
 """All tables by executable; ``segment`` is what stands below each segment of an axis."""
 
@@ -76,6 +79,8 @@ def parameter_tables() -> str:
     """
     parts = {f'below a part of the load, type `{kind}`': [
         spec for spec in table if spec.name != 'type'] for kind, table in PARTS.items()}
+    swinging = {f'below a part of the load of a swinging follower, type `{kind}`': [
+        spec for spec in table if spec.name != 'type'] for kind, table in SWING_PARTS.items()}
     titled = {
         **{_title(name): table for name, table in TABLES.items()},
         'below each track of a shaft or an axis': AXIS_TRACK,
@@ -83,7 +88,10 @@ def parameter_tables() -> str:
         '`cam_axis` while it runs, for a change of format': STAGED,
         '`drive_sim`': FOLLOW_DRIVE,
         '`drive_sim` with `mode: servo`': SERVO_DRIVE,
-        '`drive_sim` with `mode: line_shaft`': CAM_DRIVE, **parts}
+        '`drive_sim` with `mode: line_shaft`': CAM_DRIVE, **parts,
+        'a section with `type: cam_disc`': CAM_DISC, **swinging,
+        **{f'below each name in `{kind}` of a linkage': table
+           for kind, table in LINKAGE_PARTS.items()}}
     return '\n'.join(
         f'**{title}**\n\n' + _table(
             ('parameter', 'default', 'unit', 'what it does'), map(_row, table))

@@ -10,11 +10,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from cam_motion.io.bag import JointStateSeries
 from cam_motion.io.comparison import AxisReport, compare_axis, repeats_of
+from cam_motion.io.linkage_report import linkage_report, LinkageReport
 from cam_motion.io.recording import Recording, Track
 from cam_motion.motion.piece import Array
 from cam_motion.units import TURN
@@ -97,6 +98,8 @@ class Report:
         The axes that were recorded.
     drives : Mapping[str, DriveReport]
         The drives that were recorded.
+    linkages : Mapping[str, LinkageReport]
+        The linkages that were recorded.
 
     """
 
@@ -107,6 +110,7 @@ class Report:
     top_speed: float
     axes: Mapping[str, AxisReport]
     drives: Mapping[str, DriveReport]
+    linkages: Mapping[str, LinkageReport] = field(default_factory=dict)
 
 
 def make_report(recording: Recording) -> Report:
@@ -139,7 +143,9 @@ def make_report(recording: Recording) -> Report:
                             recording.states.get(name, ()))
          for name, setpoints in recording.setpoints.items() if setpoints is not None},
         {name: replace(drive_report(states), following_error=_following_error(recording, name))
-         for name, states in recording.drives.items()})
+         for name, states in recording.drives.items()},
+        {name: linkage_report(recording.machine.linkages[name].assembly, states)
+         for name, states in recording.linkages.items()})
 
 
 def _following_error(recording: Recording, drive: str) -> float | None:

@@ -13,6 +13,7 @@ from typing import Any
 
 from cam_motion.io.comparison import AxisReport, QUANTITIES, TOLERANCE
 from cam_motion.io.findings import findings, notes
+from cam_motion.io.linkage_report import LinkageReport
 from cam_motion.io.plain import finite
 from cam_motion.io.report import DriveReport, Report
 from cam_motion.motion.limits import QUANTITIES as DERIVATIVES
@@ -52,6 +53,7 @@ def report_as_data(report: Report) -> dict[str, Any]:
         },
         'axes': {name: _axis(axis) for name, axis in report.axes.items()},
         'drives': {name: _drive(drive) for name, drive in report.drives.items()},
+        'linkages': {name: _linkage(linkage) for name, linkage in report.linkages.items()},
         'messages': dict(recording.counts),
         'bag_files': [{'path': name, 'bytes': size} for name, size in recording.files.items()],
         'findings': findings(report),
@@ -82,6 +84,11 @@ def _drive(drive: DriveReport) -> dict[str, Any]:
         'rms_torque': finite(drive.rms_torque),
         'peak_speed_rpm': finite(drive.peak_speed / RPM), **followed,
     }
+
+
+def _linkage(linkage: LinkageReport) -> dict[str, Any]:
+    return {'states': linkage.states, 'gap_m': finite(linkage.gap), 'slip': finite(linkage.slip),
+            'inputs': {name: list(ends) for name, ends in linkage.travel.items()}}
 
 
 def _whole(text: str | None) -> int | None:

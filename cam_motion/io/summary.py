@@ -11,22 +11,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+import math
 from typing import Any
 
 from cam_motion.drive.servo_cycle import limit_figures, LimitFigures
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import parameters
-from cam_motion.io.axis import build_axis, Values
+from cam_motion.io.axis import build_axis, CoupledAxis, ONLY_CAM, stepping_cams, Values
+from cam_motion.io.axis_limits import in_cascade
+from cam_motion.io.cam_disc_config import CamDiscSettings
 from cam_motion.io.cam_drive_parameters import CAM_DRIVE
+from cam_motion.io.contour import check_discs
 from cam_motion.io.interlocks import JudgedInterlock, line_values
+from cam_motion.io.line_parts import guess_line, shaft_drives
 from cam_motion.io.linkage_config import build_linkages, linkage_names, LinkageSettings
-from cam_motion.io.machine import build_machine, guess_line, Machine, shaft_drives
+from cam_motion.io.machine import build_machine, Machine
 from cam_motion.io.parameters import check_values
+from cam_motion.motion.continuity import Continuity, continuity_of
 from cam_motion.motion.diagram import Axis, TimingDiagram
 from cam_motion.motion.limits import QUANTITIES, SpeedBound
 from cam_motion.motion.piecewise import Peak
 from cam_motion.motion.profile import CamProfile
 from cam_motion.units import DEGREE, rate_text, RPM
+
+SLACK = 1e-9
+"""How far (relative) a peak may exceed its limit by rounding."""
 
 
 @dataclass(frozen=True)
@@ -71,12 +80,32 @@ class AxisSummary:
         Its segments in order.
     bound : SpeedBound | None
         The highest shaft speed within its limits; None where nothing limits it.
+    continuity : Mapping[str, Continuity]
+        How smoothly each of its cams runs.
 
     """
 
     axis: Axis
     segments: tuple[SegmentSummary, ...]
     bound: SpeedBound | None
+    continuity: Mapping[str, Continuity]
+
+    def runs_at(self, omega: float) -> bool:
+        """
+        Tell whether the axis keeps its limits at a steady shaft speed.
+
+        Parameters
+        ----------
+        omega : float
+            The speed [rad/s].
+
+        Returns
+        -------
+        bool
+            Whether it does.
+
+        """
+        return self.bound is None or abs(omega) <= self.bound.omega * (1.0 + SLACK)
 
 
 @dataclass(frozen=True)
@@ -98,6 +127,10 @@ class CheckSummary:
         By how much the interlocks are kept, likewise.
     linkages : Mapping[str, LinkageSettings]
         The linkages that are sound.
+    stepping : Mapping[str, Mapping[str, Continuity]]
+        The joints of cams that are refused only because their velocity steps, by axis and cam.
+    cam_discs : Mapping[str, CamDiscSettings]
+        The cam discs that can be built.
 
     """
 
@@ -107,6 +140,14 @@ class CheckSummary:
     margins: Mapping[str, LimitFigures] = field(default_factory=dict)
     interlocks: Mapping[str, JudgedInterlock] = field(default_factory=dict)
     linkages: Mapping[str, LinkageSettings] = field(default_factory=dict)
+    stepping: Mapping[str, Mapping[str, Continuity]] = field(default_factory=dict)
+    cam_discs: Mapping[str, CamDiscSettings] = field(default_factory=dict)
+
+    @property
+    def runs_at_set_speed(self) -> bool:
+        """Tell whether the machine is sound and every axis keeps its limits at the set speed."""
+        return not self.problems and self.speed_cpm is not None and all(
+            axis.runs_at(self.speed_cpm * RPM) for axis in self.axes.values())
 
     @property
     def line_bound(self) -> tuple[str, SpeedBound] | None:
@@ -147,14 +188,21 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
         problems = error.problems
     if speed_cpm is None:
         speed_cpm = _set_speed(sections, line['master'], turning)
-    axes = {}
+    built: dict[str, CoupledAxis | None] = {}
+    stepping = {}
     for name in line['axes'] or guess_line(sections)['axes']:
+        given = sections.get(name, {})
         try:
-            axes[name] = summarise_axis(
-                build_axis(name, sections.get(name, {})), speed_cpm * RPM)
-        except ConfigurationError:
-            continue  # its problems are among those above
-    return CheckSummary((*problems, *wrong), speed_cpm, axes, margins, interlocks, linkages)
+            built[name] = build_axis(name, given)
+        except ConfigurationError:  # its problems are among those above
+            if found := stepping_cams(given):
+                stepping[name] = found
+    axes = {name: summarise_axis(axis, speed_cpm * RPM)
+            for name, axis in in_cascade(built, []).items() if axis is not None}
+    wrong = [each for each in wrong if each not in problems]  # of linkages beside the line
+    discs, of_discs = check_discs(sections)
+    return CheckSummary((*problems, *wrong, *of_discs), speed_cpm, axes, margins, interlocks,
+                        linkages, stepping, discs)
 
 
 def _margins(machine: Machine) -> dict[str, LimitFigures]:
@@ -246,7 +294,9 @@ def summarise_axis(axis: Axis, omega: float) -> AxisSummary:
         Its figures.
 
     """
-    return AxisSummary(axis, tuple(_segments(axis.profile, omega)), axis.speed_bound)
+    cams = axis.layout.cams if isinstance(axis, CoupledAxis) else {ONLY_CAM: axis.profile}
+    return AxisSummary(axis, tuple(_segments(axis.profile, omega)), axis.speed_bound,
+                       {name: continuity_of(profile) for name, profile in cams.items()})
 
 
 def _segments(profile: CamProfile, omega: float) -> list[SegmentSummary]:
@@ -275,9 +325,12 @@ def bound_text(bound: SpeedBound, unit: str) -> str:
     Returns
     -------
     str
-        Segment, quantity, limit and angle: ``feed: acceleration 400 m/s² at 10 deg``.
+        Segment, quantity, limit and angle: ``feed: acceleration 400 m/s² at 10 deg``. Of an
+        axis behind another one only what is known.
 
     """
+    if math.isnan(bound.limit):
+        return f'{bound.segment}: its limits'
     rate = rate_text(unit, QUANTITIES.index(bound.quantity))
-    return (f'{bound.segment}: {bound.quantity} {bound.limit:g} {rate} '
-            f'at {bound.at / DEGREE:.6g} deg')
+    where = '' if math.isnan(bound.at) else f' at {bound.at / DEGREE:.6g} deg'
+    return f'{bound.segment}: {bound.quantity} {bound.limit:g} {rate}{where}'

@@ -13,10 +13,12 @@ from typing import Any
 
 from cam_motion.drive.servo_cycle import LimitFigures
 from cam_motion.errors import Problem
+from cam_motion.io.contour import disc_as_data
 from cam_motion.io.interlocks import JudgedInterlock
 from cam_motion.io.linkage_data import range_as_data
 from cam_motion.io.plain import finite, plain
 from cam_motion.io.summary import AxisSummary, bound_text, CheckSummary, SegmentSummary
+from cam_motion.motion.continuity import Continuity, Joint
 from cam_motion.motion.limits import QUANTITIES
 from cam_motion.runtime.interlock import Windows
 from cam_motion.units import DEGREE, RPM
@@ -38,19 +40,24 @@ def check_as_data(check: CheckSummary) -> dict[str, Any]:
 
     """
     line = check.line_bound
+    omega = (check.speed_cpm or 0.0) * RPM
     return {
         'problems': [problem_as_data(problem) for problem in check.problems],
         'speed_cpm': check.speed_cpm,
+        'runs_at_set_speed': check.runs_at_set_speed,
         'line': {
             'max_speed_cpm': finite(line[1].omega / RPM) if line else None,
             'axis': line[0] if line else None,
         },
-        'axes': {name: _axis_as_data(axis) for name, axis in check.axes.items()},
+        'axes': {name: _axis_as_data(axis, omega) for name, axis in check.axes.items()},
+        'stepping': {name: {cam: continuity_as_data(each, omega) for cam, each in cams.items()}
+                     for name, cams in check.stepping.items()},
         'drives': {name: margins_as_data(margins) for name, margins in check.margins.items()},
         'interlocks': {name: judged_as_data(each) for name, each in check.interlocks.items()},
         'linkages': {name: {each: range_as_data(settings, each)
                             for each in settings.linkage.inputs}
                      for name, settings in check.linkages.items()},
+        'cam_discs': {name: disc_as_data(each) for name, each in check.cam_discs.items()},
     }
 
 
@@ -120,8 +127,42 @@ def problem_as_data(problem: Problem) -> dict[str, Any]:
             'hint': problem.hint}
 
 
-def _axis_as_data(summary: AxisSummary) -> dict[str, Any]:
+def continuity_as_data(continuity: Continuity, omega: float) -> dict[str, Any]:
+    """
+    Turn the continuity of a cam into plain data.
+
+    Parameters
+    ----------
+    continuity : Continuity
+        The joints.
+    omega : float
+        Set speed of the shaft [rad/s].
+
+    Returns
+    -------
+    dict[str, Any]
+        Class of the cam and where it is lowest, and the same for each joint.
+
+    """
+    return {
+        **_joint_as_data(continuity.weakest, omega),
+        'joints': [{
+            'before': each.before.name, 'after': each.after.name,
+            **_joint_as_data(each.joint, omega),
+            'inside': None if each.inside is None else _joint_as_data(each.inside, omega),
+        } for each in continuity.joints],
+    }
+
+
+def _joint_as_data(joint: Joint, omega: float) -> dict[str, Any]:
+    return {
+        'class': joint.label, 'at_deg': joint.at / DEGREE, 'order': joint.order,
+        'geometric_step': joint.step, 'step': finite(joint.step_at(omega))}
+
+
+def _axis_as_data(summary: AxisSummary, omega: float) -> dict[str, Any]:
     axis, bound = summary.axis, summary.bound
+    cams = {cam: continuity_as_data(each, omega) for cam, each in summary.continuity.items()}
     return {
         'unit': axis.unit,
         'max_speed_cpm': finite(bound.omega / RPM) if bound else None,
@@ -130,6 +171,8 @@ def _axis_as_data(summary: AxisSummary) -> dict[str, Any]:
         'limits': {name: axis.limits.of_order(order)
                    for order, name in enumerate(QUANTITIES[1:], start=1)},
         'segments': [_segment_as_data(segment) for segment in summary.segments],
+        'runs_at_set_speed': summary.runs_at(omega),
+        'continuity': next(iter(cams.values())) if len(cams) == 1 else cams,
     }
 
 

@@ -17,6 +17,7 @@ from cam_motion.nodes import diagnostics
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.qos import SETPOINTS
 from cam_motion.nodes.shaft_ticker import Listener
+from cam_motion.nodes.time_base import TimeBase
 from cam_motion.nodes.wire import unpack_point
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ticks import NANOSECONDS
@@ -155,7 +156,7 @@ class SetpointMode(DriveMode):
         super().__init__(node, own_process)
         self.answered = 0
         self.refused = 0
-        self._epoch_ns: int | None = None  # node time at which the machine's time base began
+        self._time = TimeBase(node)
 
     def respond(self, setpoint: Point, stamp_ns: int) -> None:
         """
@@ -188,7 +189,7 @@ class SetpointMode(DriveMode):
 
     def activate(self) -> None:
         """Wait for setpoints."""
-        self._epoch_ns = None
+        self._time.forget()
         self.node.set_state('waiting')
 
     def answer(self, setpoint: Point) -> None:
@@ -204,17 +205,10 @@ class SetpointMode(DriveMode):
         if not self.node.active:
             return
         time_ns = setpoint.sec * NANOSECONDS + setpoint.nanosec
-        if self._epoch_ns is None or self._clock_started_over(time_ns):
-            self._epoch_ns = self.node.get_clock().now().nanoseconds - time_ns
+        if self._time.begins(time_ns):
             self.node.set_state('following')
-        self.respond(setpoint, self._epoch_ns + time_ns)
+        self.respond(setpoint, self._time.stamp(time_ns))
         self.answered += 1
-
-    def _clock_started_over(self, time_ns: int) -> bool:
-        """Tell whether /clock has jumped back: the machine's time base goes on, stamps do not."""
-        if not self.node.sim_time:
-            return False
-        return self.node.get_clock().now().nanoseconds < self._epoch_ns + time_ns - NANOSECONDS
 
     def _on_setpoint(self, data: bytes) -> None:
         setpoint = unpack_point(data)

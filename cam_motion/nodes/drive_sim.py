@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 import sys
 from typing import Any
 
-from cam_motion.io.machine import LINE_SHAFT
+from cam_motion.io.line_parts import LINE_SHAFT
 from cam_motion.io.parameters import ParameterSpec
 from cam_motion.io.servo_config import SERVO
 from cam_motion.nodes import diagnostics

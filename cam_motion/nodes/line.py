@@ -5,7 +5,7 @@
 # writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
-"""The whole machine in one process: shaft, axes and drives on one executor."""
+"""The whole machine in one process: shaft, axes, drives and linkages on one executor."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from cam_motion.io.machine import build_machine
 from cam_motion.io.parameters import LINE
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.drive_sim import DriveSim
+from cam_motion.nodes.linkage_state import LinkageState
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.master_shaft import MasterShaft
 from cam_motion.nodes.parameters import section_of, values_of
@@ -99,8 +100,8 @@ def make_line(**options: Any) -> list[ManagedNode]:
     """
     Make all nodes of the machine that the parameters describe.
 
-    Shaft points reach the axes, and setpoints the drives, by a call within the process; all of
-    them are published as well.
+    Shaft points reach the axes, and setpoints the drives and linkages, by a call within the
+    process; all of them are published as well.
 
     Parameters
     ----------
@@ -110,8 +111,8 @@ def make_line(**options: Any) -> list[ManagedNode]:
     Returns
     -------
     list[ManagedNode]
-        Master shaft, axes, drives, and the line itself; a drive that turns the shaft stands in
-        the place of the master.
+        Master shaft, axes, drives, linkages, and the line itself; a drive that turns the shaft
+        stands in the place of the master.
 
     Raises
     ------
@@ -146,7 +147,11 @@ def make_line(**options: Any) -> list[ManagedNode]:
             followed.listeners.append(drive.answer)
             if not drive.kind.TURNS_SHAFT:
                 followed.drive = partial(values_of, drive)
-    line.parts = [master, *axes.values(), *(drive for drive in drives if drive is not master)]
+    linkages = [LinkageState(name, own_process=False, **options) for name in names['linkages']]
+    for name, axis in axes.items():
+        axis.listeners += [partial(linkage.answer, name) for linkage in linkages]
+    line.parts = [master, *axes.values(), *(drive for drive in drives if drive is not master),
+                  *linkages]
     return [*line.parts, line]
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from cam_motion.io.axis import Values
 from cam_motion.io.interlocks import line_values
-from cam_motion.io.machine import guess_line, shaft_drives
+from cam_motion.io.line_parts import guess_line, shaft_drives
 from cam_motion.io.servo_config import SERVO
 from cam_motion.io.tracks import track_names
 from cam_motion.nodes.diagnostics import TOPIC as DIAGNOSTICS
@@ -53,7 +53,7 @@ def topics_of(sections: Mapping[str, Values]) -> list[LineTopic]:
     names, _ = line_values(sections.get('line', guess_line(sections)))
     # a drive that turns the shaft is the master
     masters = [] if shaft_drives(sections, names['drives']) else [names['master']]
-    parts = [*masters, *names['axes'], *names['drives'], 'line']
+    parts = [*masters, *names['axes'], *names['drives'], *names['linkages'], 'line']
     return [
         LineTopic('shaft', _POINT, SETPOINTS),
         LineTopic('joint_states', _JOINTS, SETPOINTS),
@@ -63,6 +63,10 @@ def topics_of(sections: Mapping[str, Values]) -> list[LineTopic]:
         *(LineTopic(f'{drive}/drive_state', _JOINTS, SETPOINTS) for drive in names['drives']),
         *(LineTopic(f'{drive}/actual', _POINT, SETPOINTS) for drive in names['drives']
           if sections.get(drive, {}).get('mode') == SERVO),
+        *(LineTopic(f'{linkage}/joint_states', _JOINTS, SETPOINTS)
+          for linkage in names['linkages']),
+        *(LineTopic(f'{linkage}/markers', 'visualization_msgs/msg/MarkerArray', SETPOINTS)
+          for linkage in names['linkages']),
         *(LineTopic(f'{part}/{track}', 'std_msgs/msg/Bool', LATCHED)
           for part in parts for track in track_names(sections.get(part, {}))),
         *(LineTopic(f'{axis}/trajectory', 'trajectory_msgs/msg/JointTrajectory', SETPOINTS)

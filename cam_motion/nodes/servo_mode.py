@@ -108,8 +108,9 @@ class ServoMode(SetpointMode):
             state = self._servo.start(to)
         elif time_ns < self._last.time_ns - NANOSECONDS:
             # the machine's time base has begun anew, as with another master
-            self._epoch_ns = stamp_ns = self.node.get_clock().now().nanoseconds - time_ns
-            stamp_ns += time_ns
+            self._time.forget()
+            self._time.begins(time_ns)
+            stamp_ns = self._time.stamp(time_ns)
             state = self._servo.start(to)
         else:
             state = self._servo.follow(to, self._settings.max_catch_up_ns)
@@ -136,7 +137,7 @@ class ServoMode(SetpointMode):
         self._looked_ns = now_ns
         if late or self.answered != self._seen:
             self._seen, self._heard_ns = self.answered, now_ns
-        if self._last is None or not self.node.active or self._epoch_ns is None:
+        if self._last is None or not self.node.active or not self._time.known:
             return
         if not self._silent:
             if now_ns - self._heard_ns <= self._settings.setpoint_timeout * NANOSECONDS:
@@ -147,10 +148,10 @@ class ServoMode(SetpointMode):
             self.node.get_logger().warning(
                 f'no setpoint of {self.axis} for {self._settings.setpoint_timeout:g} s: '
                 'coming to rest')
-        time_ns = min(now_ns - self._epoch_ns,
+        time_ns = min(now_ns - self._time.stamp(0),
                       self._last.time_ns + self._settings.max_catch_up_ns)
         if time_ns > self._last.time_ns:
-            self._publish(self._servo.advance(time_ns), self._epoch_ns + time_ns,
+            self._publish(self._servo.advance(time_ns), self._time.stamp(time_ns),
                           *divmod(time_ns, NANOSECONDS))
 
     def health(self) -> tuple[bytes, Mapping[str, Any]]:

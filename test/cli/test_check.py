@@ -91,6 +91,52 @@ def test_constant_acceleration_has_270_and_infinite_jerk(cam_motion, read_json, 
     assert '∞' in cam_motion('check', file).stdout
 
 
+def test_each_joint_tells_its_class_and_its_step(cam_motion, read_json, machine_file):
+    data = read_json(cam_motion('check', machine_file, '--json').stdout)
+    assert data['runs_at_set_speed'] and data['stepping'] == {}
+    feeder = data['axes']['feeder']
+    found = feeder['continuity']
+    assert feeder['runs_at_set_speed']
+    assert (found['class'], found['order'], found['at_deg']) == ('C2', 3, 0.0)
+    assert [(j['before'], j['after'], j['class']) for j in found['joints']] == [
+        ('wait', 'feed', 'C2'), ('feed', 'wait', 'C2')]
+    jerk = segment(data, 'feeder', 'feed')['peak_jerk']
+    assert [j['step'] for j in found['joints']] == pytest.approx([jerk, -jerk], rel=1e-12)
+    assert found['joints'][0]['geometric_step'] == pytest.approx(
+        jerk / (200.0 * math.pi / 30.0) ** 3, rel=1e-12)
+    assert found['joints'][0]['inside']['class'] == 'C3'
+    assert found['joints'][1]['inside'] is None
+    text = cam_motion('check', machine_file).stdout
+    assert 'feeder: class C2, the jerk steps' in text and 'feeder runs at 200 cycles/min' in text
+    assert 'wait | feed' in text and '6.77 m/rad³' in text and '62194 m/s³' in text
+
+
+def test_an_axis_beyond_its_limits_does_not_run(cam_motion, read_json, machine_file):
+    data = read_json(cam_motion('check', machine_file, '--speed-cpm', 225, '--json').stdout)
+    assert not data['runs_at_set_speed'] and not data['axes']['feeder']['runs_at_set_speed']
+    assert data['axes']['knife']['runs_at_set_speed']
+    done = cam_motion('check', machine_file, '--speed-cpm', 225)
+    assert 'feeder does not run at 225 cycles/min' in done.stdout
+
+
+def test_a_cam_whose_velocity_steps_is_refused_with_its_joints(cam_motion, read_json, tmp_path):
+    file = tmp_path / 'step.yaml'
+    file.write_text(
+        'master_shaft: {ros__parameters: {speed_cpm: 60.0}}\n'
+        'slide: {ros__parameters: {segments: [out, wait, back], '
+        'out: {law: constant_velocity, end_deg: 90.0, lift: 0.5}, wait: {end_deg: 180.0}, '
+        'back: {law: cubic, end_deg: 360.0, lift: -0.5}}}\n')
+    done = cam_motion('check', file, '--json')
+    data = read_json(done.stdout)
+    assert done.returncode == 2 and data['axes'] == {} and not data['runs_at_set_speed']
+    found = data['stepping']['slide']['cam']
+    assert [joint['class'] for joint in found['joints']] == ['C0', 'C0', 'C1']
+    # 0.5 m in a quarter of a second
+    assert [joint['step'] for joint in found['joints'][:2]] == pytest.approx([2.0, -2.0])
+    text = cam_motion('check', file).stdout
+    assert 'slide: class C0, the velocity steps, first at 0 deg' in text
+
+
 def test_another_speed_scales_the_peaks_and_can_break_limits(cam_motion, read_json, machine_file):
     at_100 = read_json(cam_motion('check', machine_file, '--json', '--speed-cpm', 100).stdout)
     assert segment(at_100, 'feeder', 'feed')['peak_velocity'] == pytest.approx(4.5, rel=1e-12)

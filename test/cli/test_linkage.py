@@ -153,3 +153,12 @@ def test_the_motions_are_drawn(cam_motion, tmp_path):
     assert [file.name for file in files] == [
         f'linkage_umbrella_{name}.png' for name in ('sliding', 'opening', 'both')]
     assert all(file.read_bytes()[:4] == b'\x89PNG' for file in files)
+
+
+def test_the_urdf_is_written_where_it_is_told(cam_motion, tmp_path):
+    file = tmp_path / 'new' / 'umbrella.urdf'
+    done = cam_motion('linkage', UMBRELLA, '--urdf', file, '--json')
+    assert json.loads(done.stdout)['files'] == [str(file)]
+    assert '<joint name="theta2" type="continuous">' in file.read_text()
+    done = cam_motion('linkage', UMBRELLA, '--urdf', tmp_path)
+    assert done.returncode == 2 and '--urdf' in done.stderr

@@ -7,6 +7,7 @@
 # language governing permissions and limitations under the License.
 """The display of a running line, and children that do not behave."""
 
+from io import StringIO
 from pathlib import Path
 
 from cam_motion.cli.child import Child, stop_signals
@@ -20,7 +21,8 @@ from rich.console import Console
 
 pytestmark = pytest.mark.timeout(60)
 
-MACHINE = load_machine(Path(__file__).resolve().parents[2] / 'config' / 'cutting_machine.yaml')
+CONFIGS = Path(__file__).resolve().parents[2] / 'config'
+MACHINE = load_machine(CONFIGS / 'cutting_machine.yaml')
 SEEN = Snapshot(
     time=12.5, speed_cpm=200.0, phi=33.25 * 6.283185307179586,
     axes={'feeder': (9.9, 3.25), 'press': (0.02, -0.0), 'knife': None},
@@ -34,6 +36,18 @@ def test_a_plain_line_says_everything():
                  'feeder 9.9000 m 3.2500 m/s', 'press 0.0200 m 0.0000 m/s', 'knife - m - m/s',
                  'feeder_drive -1466.6 N m 1282.0 rpm', 'ticks missed 3, late 17'):
         assert part in line
+
+
+def test_a_linkage_is_shown_with_its_state_and_on_a_plain_line_unless_it_follows():
+    machine = load_machine(CONFIGS / 'umbrella.yaml')
+    reason = 'h1: 2.3; the linkage can be assembled from 0.2 m to 2.2 m'
+    held = f'held: {reason}'
+    console = Console(width=100, file=StringIO())
+    console.print(render(machine, Snapshot(time=1.0, states={'umbrella': held}), 'umbrella.yaml'))
+    assert f'umbrella: {reason}' in console.file.getvalue()
+    assert held in plain_line(machine, Snapshot(time=1.0, states={'umbrella': held}))
+    following = plain_line(machine, Snapshot(time=1.0, states={'umbrella': 'following'}))
+    assert 'umbrella' not in following
 
 
 def test_the_table_fits_a_narrow_terminal():

@@ -134,7 +134,8 @@ def test_a_picture_holds_the_curves_of_its_case(umbrella):
     assert labels == [['theta2', 'theta3', 'theta5', 'theta6'],
                       ['omega2', 'omega3', 'omega5', 'omega6'], ['F', 'E']]
     assert drawing.get_title(loc='left') == 'umbrella: opening'
-    assert panels[0].get_title(loc='left') == 'h1 = 0.8 m, h2 from 1.2 to 0.2952 m'
+    assert panels[0].get_title(loc='left') == (
+        'h1 = 0.8 m\nh2 from 1.2 to 0.2952 m, crank −6.283 rad/s, spool radius 0.02 m')
 
 
 @pytest.mark.parametrize('linkage', [four_bar(0.1, 0.3, 0.25, 0.35), slider_crank(0.1, 0.3)],

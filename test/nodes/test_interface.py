@@ -13,6 +13,7 @@ from cam_motion.io.config import read_sections
 from cam_motion.io.interface import INTERFACE
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.drive_sim import DriveSim
+from cam_motion.nodes.linkage_state import LinkageState
 from cam_motion.nodes.master_shaft import MasterShaft
 import pytest
 
@@ -20,10 +21,12 @@ pytestmark = [pytest.mark.timeout(120), pytest.mark.ros]
 
 TRACK = {'tracks': ['track'], 'track.on_deg': [10.0], 'track.off_deg': [20.0]}
 AXIS = {'segments': ['rest'], 'rest.end_deg': 360.0, 'trajectory.rate_hz': 50.0, **TRACK}
-PRESS = read_sections(Path(__file__).resolve().parents[2] / 'config' / 'cam_press_drive.yaml')
+CONFIGS = Path(__file__).resolve().parents[2] / 'config'
+PRESS = read_sections(CONFIGS / 'cam_press_drive.yaml')
+FOUR_BAR = {**read_sections(CONFIGS / 'four_bar.yaml')['four_bar'], 'theta2.axis': 'cam_axis'}
 NODES = {
     'master_shaft': (MasterShaft, {'obey': ['cam_axis'], **TRACK}), 'cam_axis': (CamAxis, AXIS),
-    'drive_sim': (DriveSim, {'axis': 'cam_axis'}),
+    'drive_sim': (DriveSim, {'axis': 'cam_axis'}), 'linkage_state': (LinkageState, FOUR_BAR),
 }
 # What ROS gives to every lifecycle node
 _OF_ROS = ('parameter', 'transition', 'get_state', 'change_state', 'get_available', 'rosout',

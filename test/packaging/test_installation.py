@@ -54,7 +54,7 @@ def names(folder, pattern='*'):
 
 @pytest.mark.timeout(60)
 def test_the_module_is_whole(root, prefix):
-    wanted = {path for kind in ('*.py', '*.yaml', 'py.typed')
+    wanted = {path for kind in ('*.html', '*.py', '*.yaml', 'py.typed')
               for path in names(root / 'cam_motion', kind)}
     assert names(installed(prefix)) == wanted
 
@@ -68,7 +68,7 @@ def test_the_ament_index_knows_the_package(prefix):
 def test_share_has_manifest_machines_and_launch_files(root, prefix):
     wanted = {Path('package.xml'), Path('README.md')}
     wanted |= {path.relative_to(root) for path in (root / 'config').glob('*.yaml')}
-    wanted |= {path.relative_to(root) for path in (root / 'launch').glob('*.py')}
+    wanted |= {path.relative_to(root) for path in (root / 'launch').glob('*.*')}
     assert names(prefix / 'share/cam_motion') == wanted
 
 

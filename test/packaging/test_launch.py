@@ -8,6 +8,7 @@
 """The launch file must start exactly the nodes a machine file lists."""
 
 import importlib.util
+import json
 from pathlib import Path
 import sys
 from types import SimpleNamespace
@@ -37,15 +38,26 @@ class Recorded:
 @pytest.fixture
 def launch_file(root, monkeypatch):
     """Import the launch file, launch itself replaced by stand-ins."""
-    for name in ('launch', 'launch.actions', 'launch.substitutions', 'launch_ros',
-                 'launch_ros.actions', 'launch_ros.parameter_descriptions'):
+    stand_in(monkeypatch)
+    return loaded(root / 'launch' / 'cutting_machine.launch.py')
+
+
+def stand_in(monkeypatch):
+    """Put stand-ins in the place of launch."""
+    for name in ('launch', 'launch.actions', 'launch.launch_description_sources',
+                 'launch.substitutions', 'launch_ros', 'launch_ros.actions',
+                 'launch_ros.parameter_descriptions'):
         monkeypatch.setitem(sys.modules, name, SimpleNamespace(
-            DeclareLaunchArgument=Recorded, LaunchConfiguration=Recorded,
-            LaunchContext=Recorded, LaunchDescription=Recorded, Node=Recorded,
-            OpaqueFunction=Recorded, ParameterValue=lambda value, value_type: value_type(value),
-            Shutdown=Recorded))
-    path = root / 'launch' / 'cutting_machine.launch.py'
-    spec = importlib.util.spec_from_file_location('cutting_machine_launch', path)
+            DeclareLaunchArgument=Recorded, IncludeLaunchDescription=Recorded,
+            LaunchConfiguration=Recorded, LaunchContext=Recorded, LaunchDescription=Recorded,
+            Node=Recorded, OpaqueFunction=Recorded,
+            ParameterValue=lambda value, value_type: value_type(value),
+            PythonLaunchDescriptionSource=Path, Shutdown=Recorded))
+
+
+def loaded(path):
+    """Import a launch file."""
+    spec = importlib.util.spec_from_file_location(path.name.replace('.', '_'), path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -87,6 +99,13 @@ def test_a_drive_that_turns_the_shaft_stands_in_the_place_of_the_master(start, r
     assert nodes == [('cam_axis', 'follower'), ('drive_sim', 'press_drive')]
 
 
+def test_the_linkages_of_the_umbrella_are_started_too(start, root):
+    nodes = [(node['executable'], node['name'])
+             for node in start(config=str(root / 'config' / 'umbrella.yaml'))]
+    assert nodes == [('linkage_state', 'umbrella'), ('cam_axis', 'slider'), ('cam_axis', 'crank'),
+                     ('master_shaft', 'master_shaft')]
+
+
 def test_a_recorder_comes_with_a_directory_only(start):
     recorder = start(record='bag')[0]
     assert recorder['name'] == recorder['executable'] == 'bag_recorder'
@@ -115,3 +134,43 @@ def test_a_file_without_a_line_is_refused_by_name(start, tmp_path, text):
     (tmp_path / 'other.yaml').write_text(text)
     with pytest.raises(RuntimeError, match='other.yaml: line.ros__parameters'):
         start(config=str(tmp_path / 'other.yaml'))
+
+
+@pytest.fixture
+def umbrella(root, monkeypatch):
+    """Import the launch file of the umbrella."""
+    stand_in(monkeypatch)
+    return loaded(root / 'launch' / 'umbrella.launch.py')
+
+
+def test_the_umbrella_is_the_same_line_with_viewers_on_demand(umbrella, root):
+    actions = umbrella.generate_launch_description().arguments[0]
+    line, = (each for each in actions if 'launch_arguments' in each.options)
+    assert line.arguments[0] == root / 'launch' / 'cutting_machine.launch.py'
+    assert [name for name, _ in line.options['launch_arguments']] == [
+        'config', 'namespace', 'record']
+    given = {'config': str(umbrella.CONFIG), 'linkage': 'umbrella', 'namespace': '/l1',
+             'urdf': 'false', 'rviz': 'false'}
+    assert umbrella.viewers(given) == []
+    frames, rviz = (each.options for each in umbrella.viewers(
+        {**given, 'urdf': 'true', 'rviz': 'true'}))
+    assert {frames['namespace'], rviz['namespace']} == {'l1'}
+    assert frames['remappings'] == [('joint_states', 'umbrella/joint_states')]
+    assert 'name="theta2"' in frames['parameters'][0]['robot_description']
+    assert Path(rviz['arguments'][1]).is_file()
+    with pytest.raises(RuntimeError, match='inputs'):
+        umbrella.urdf_of(str(umbrella.CONFIG), 'no_such_linkage')
+
+
+def test_what_rviz_and_foxglove_show_are_the_topics_of_the_umbrella(root):
+    view = yaml.safe_load((root / 'launch' / 'umbrella.rviz').read_text())['Visualization Manager']
+    shown = {each['Class'].split('/')[-1]: each for each in view['Displays']}
+    assert shown['MarkerArray']['Topic']['Value'] == 'umbrella/markers'
+    assert view['Global Options']['Fixed Frame'] == 'world'
+    layout = json.loads((root / 'launch' / 'umbrella.foxglove.json').read_text())
+    panels = layout['configById']
+    assert panels['3D!umbrella']['topics'] == {'/umbrella/markers': {'visible': True}}
+
+    def placed(part):
+        return [part] if isinstance(part, str) else placed(part['first']) + placed(part['second'])
+    assert set(placed(layout['layout'])) == set(panels)

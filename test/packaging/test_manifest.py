@@ -20,10 +20,12 @@ pytestmark = pytest.mark.timeout(20)
 # Libraries whose import, registry and rosdep names differ: import -> (registry, rosdep key).
 # None: rosdep has no key, so that a comment in package.xml names the library.
 LIBRARIES = {
+    'ezdxf': ('ezdxf', 'python3-ezdxf'),
     'lz4': ('lz4', None),
     'matplotlib': ('matplotlib', 'python3-matplotlib'),
     'mcap': ('mcap', None),
     'numpy': ('numpy', 'python3-numpy'),
+    'PIL': ('pillow', 'python3-pil'),
     'rich': ('rich', 'python3-rich'),
     'rosbags': ('rosbags', 'python3-rosbags-pip'),
     'ruamel': ('ruamel.yaml', 'python3-ruamel.yaml'),
@@ -31,6 +33,8 @@ LIBRARIES = {
     'yaml': ('PyYAML', 'python3-yaml'),
     'zstandard': ('zstandard', None),
 }
+# Libraries that some may leave out, by the extra of setup.py: import -> (registry, extra).
+OPTIONAL = {'imageio_ffmpeg': ('imageio-ffmpeg', 'mp4')}
 LAUNCH = {'launch', 'launch_ros', 'ros2launch'}
 
 
@@ -79,6 +83,11 @@ def test_setup_py_agrees_with_package_xml(package, setup_arguments, field):
 def test_every_import_of_the_package_is_declared(root, dependencies, setup_arguments):
     missing = []
     for name, place in imported(root / 'cam_motion').items():
+        if name in OPTIONAL:
+            library, extra = OPTIONAL[name]
+            if library not in setup_arguments['extras_require'][extra]:
+                missing.append(f'{place}: {name} needs {library} in the extra {extra}')
+            continue
         registry, key = LIBRARIES.get(name, (None, name))
         if key is not None and key not in dependencies:
             missing.append(f'{place}: {name} needs {key} in package.xml')

@@ -75,8 +75,11 @@ def _draw_axis(row: Axes, axis: Axis, colour: str) -> None:
         row.axvline(segment.end_deg, color=colour, alpha=0.35, linewidth=0.8)
         start = segment.end_deg
     if axis.profile.advance:
-        row.text(0.995, 0.97, f'advances {axis.profile.advance:g} {axis.unit} per cycle',
-                 ha='right', va='top', color=GREY, transform=row.transAxes)
+        # away from the names of the segments and from the curve, which has risen by then
+        above = axis.profile.advance < 0.0
+        row.text(0.995, 0.82 if above else 0.06,
+                 f'advances {axis.profile.advance:g} {axis.unit} per cycle', ha='right',
+                 va='top' if above else 'bottom', color=GREY, transform=row.transAxes)
 
 
 def _levels(axis: Axis, low: float, high: float) -> list[float]:

@@ -14,11 +14,15 @@ from collections.abc import Mapping, Sequence
 from cam_motion.io.linkage_config import LinkageCase, LinkageSettings, rate_name
 from cam_motion.io.plots.style import COLOURS, GREY, new_figure, styled
 from cam_motion.mechanism.linkage_motion import LinkageMotion, sweep
+from cam_motion.mechanism.loops import ComplexArray
 from cam_motion.motion.piece import Array
 from cam_motion.units import DEGREE
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
+
+NAME_AWAY = 11.0
+"""Distance of a point's name from it [pt]."""
 
 _MOMENTS = 181
 _DRAWN = 5  # positions in the drawing
@@ -50,7 +54,7 @@ def linkage_figure(settings: LinkageSettings, case: LinkageCase) -> Figure:
     motions = run_case(settings, case, times)
     linkage = settings.linkage
     angles = [name for name in linkage.unknowns if name in linkage.angles]
-    points = _moving(motions)
+    points = moving_points(motions)
     with styled():
         figure = new_figure(6.6)
         grid = figure.add_gridspec(3, 2, width_ratios=(5, 6))
@@ -101,25 +105,64 @@ def run_case(settings: LinkageSettings, case: LinkageCase, times: Array) -> list
     return sweep(settings.assembly, inputs, rates)
 
 
-def _moving(motions: Sequence[LinkageMotion]) -> list[str]:
-    """List the points that move by more than rounding."""
+def moving_points(motions: Sequence[LinkageMotion]) -> list[str]:
+    """
+    List the points that move by more than rounding.
+
+    Parameters
+    ----------
+    motions : Sequence[LinkageMotion]
+        The motions.
+
+    Returns
+    -------
+    list[str]
+        Their names.
+
+    """
     speeds = {name: max(abs(each.points[name].velocity) for each in motions)
               for name in motions[0].points}
     fastest = max(speeds.values(), default=0.0)
     return [name for name, speed in speeds.items() if speed > _STILL * fastest]
 
 
+def away_from_middle(places: ComplexArray) -> ComplexArray:
+    """
+    Give the directions in which names hide least of a linkage: away from its middle.
+
+    Parameters
+    ----------
+    places : ndarray of complex, shape (..., points)
+        Where its points are.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., points)
+        Unit vectors; up for a point in the middle.
+
+    """
+    ways = places - places.mean(axis=-1, keepdims=True)
+    lengths = np.abs(ways)
+    return np.where(lengths > 0.0, ways / np.where(lengths > 0.0, lengths, 1.0), 1j)
+
+
 def _inputs_text(settings: LinkageSettings, case: LinkageCase) -> str:
-    """Say from where to where the inputs go."""
+    """Say from where to where the inputs go, and how fast."""
     start, said = settings.assembly.start, []
     for name in settings.linkage.inputs:
         turns = name in settings.linkage.angles
         factor, unit = (1.0 / DEGREE, 'deg') if turns else (1.0, 'm')
         begin = case.inputs.values.get(name, start[name])
-        end = begin + case.inputs.rates.get(name, 0.0) * case.duration
-        said.append(f'{name} = {begin * factor:.4g} {unit}' if end == begin else
-                    f'{name} from {begin * factor:.4g} to {end * factor:.4g} {unit}')
-    return ', '.join(said)
+        rate = case.inputs.rates.get(name, 0.0)
+        text = f'{name} = {begin * factor:.4g} {unit}'
+        if rate:
+            text = (f'{name} from {begin * factor:.4g} to '
+                    f'{(begin + rate * case.duration) * factor:.4g} {unit}, ')
+            radius = settings.spools.get(name)
+            text += f'{rate:.4g} {settings.linkage.unit(name)}/s' if radius is None else (
+                f'crank {rate / radius:.4g} rad/s, spool radius {radius:g} m')
+        said.append(text.replace('-', '−'))
+    return '\n'.join(said)
 
 
 def _lines(panel: Axes, times: Array, curves: Mapping[str, Array], label: str) -> None:
@@ -144,18 +187,19 @@ def _draw(axes: Axes, settings: LinkageSettings, motions: Sequence[LinkageMotion
                 axes.plot(way.real, way.imag, color=COLOURS[0] if last else GREY,
                           alpha=1.0 if last else 0.18 + 0.12 * k, linewidth=2.2 if last else 1.2,
                           solid_capstyle='round')
-    axes.set_aspect('equal', adjustable='box', anchor='N')
+    axes.set_aspect('equal', adjustable='datalim')
     axes.margins(0.12)
     places = {name: each.position for name, each in motions[-1].points.items()}
     axes.plot([z.real for z in places.values()], [z.imag for z in places.values()], 'o',
               color=COLOURS[0], markersize=4.5, markerfacecolor='white')
-    for name, place in places.items():
-        axes.annotate(name, (place.real, place.imag), xytext=(5.0, 5.0),
-                      textcoords='offset points', fontsize=8.5)
+    ways = away_from_middle(np.array(list(places.values())))
+    for (name, place), way in zip(places.items(), NAME_AWAY * ways):
+        axes.annotate(name, (place.real, place.imag), xytext=(way.real, way.imag), ha='center',
+                      va='center', textcoords='offset points', fontsize=8.5)
     everything = [each.position for motion in motions for each in motion.points.values()]
     height = max(float(np.ptp(np.real(everything))), float(np.ptp(np.imag(everything))))
     label = 'x [m]'
-    if moving := _moving(motions[-1:]):
+    if moving := moving_points(motions[-1:]):
         arrows = np.array([motions[-1].points[name].velocity for name in moving])
         fastest = float(np.abs(arrows).max())
         arrows *= _ARROW * height / fastest

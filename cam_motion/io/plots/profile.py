@@ -30,6 +30,7 @@ _QUANTITIES = ('position', 'velocity', 'acceleration', 'jerk')
 # Half the width [deg] and the height (as a share of the panel's) of a value written at a peak.
 _TEXT_DEG = 15.0
 _TEXT_HEIGHT = 0.15
+_ROUNDING = 1e-9  # smaller peaks (as a share of the segment's largest) are none
 _WORTH_WRITING = 0.02  # smaller peaks (as a share of the panel's largest) carry no value
 
 
@@ -104,14 +105,13 @@ def _draw_order(row: Axes, axis: Axis, order: int, omega: float) -> None:
 
 def _peaks(profile: CamProfile, order: int) -> list[Peak]:
     """Give the least and the greatest value of each moving segment, the largest first."""
-    found, start = [], 0.0
-    for segment in profile.segments:
-        if not segment.is_dwell:
-            curve = segment.law.curve.scaled(start, segment.end, segment.gain)
-            least, greatest = curve.extremes(order)
+    found = []
+    for part in profile.parts:
+        if part.peak(1).value:
+            least, greatest = part.extremes(order)
+            rounding = _ROUNDING * max(-least.value, greatest.value)
             found += [peak for peak, sense in ((least, -1.0), (greatest, 1.0))
-                      if sense * peak.value > 0.0]
-        start = segment.end
+                      if sense * peak.value > rounding]
     return sorted(found, key=lambda peak: -abs(peak.value))
 
 
