@@ -26,6 +26,9 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 _SIM_TIME_CATCH_UP = 1.0  # /clock may come in coarse steps: its ticks are all carried out [s]
+# Late ticks at a time: with more, the last of a burst would push the first out of the history of
+# the streams (10) before a busy reader has taken it.
+_BURST = 5
 
 Listener = Callable[[Point], None]
 
@@ -76,8 +79,9 @@ class ShaftTicker:
         self._waits = waits
         self._listeners = listeners
         catch_up = values['max_catch_up']
-        self.schedule = TickSchedule(
-            values['rate_hz'], max(catch_up, _SIM_TIME_CATCH_UP) if node.sim_time else catch_up)
+        self.schedule = (
+            TickSchedule(values['rate_hz'], max(catch_up, _SIM_TIME_CATCH_UP)) if node.sim_time
+            else TickSchedule(values['rate_hz'], catch_up, _BURST))
         self.count = 0
         self.last_ns = 0
         self.given_up = 0

@@ -33,6 +33,9 @@ class TickSchedule:
         Ticks per second [Hz]; positive.
     catch_up : float
         How late a tick may be carried out [s].
+    burst : int | None
+        How many ticks are carried out at a time at most, the others at the next readings of the
+        clock; None for as many as are due.
 
     Attributes
     ----------
@@ -45,11 +48,12 @@ class TickSchedule:
 
     """
 
-    def __init__(self, rate: float, catch_up: float) -> None:
+    def __init__(self, rate: float, catch_up: float, burst: int | None = None) -> None:
         """Begin before the first tick."""
         self.rate = rate
         self._period = (NANOSECONDS / Fraction(rate)).as_integer_ratio()
         self.catch_up = catch_up
+        self.burst = burst
         self.late = 0
         self.missed = 0
         self.worst_ns = 0
@@ -110,8 +114,9 @@ class TickSchedule:
             newest = self.next_tick
         oldest = max(self.next_tick, newest - int(self.catch_up * self.rate + _EARLY))
         self.missed += oldest - self.next_tick
-        self.late += max(0, newest - oldest)
-        if newest >= oldest:
-            self.next_tick = newest + 1
+        last = newest if self.burst is None else min(newest, oldest + self.burst - 1)
+        if last >= oldest:
+            self.late += last - oldest + (last < newest)
+            self.next_tick = last + 1
             self.worst_ns = max(self.worst_ns, now_ns - self._zero_ns - self.time_ns(oldest))
-        return range(oldest, newest + 1)
+        return range(oldest, last + 1)

@@ -82,6 +82,30 @@ def test_late_and_missed_ticks_are_counted():
     assert list(schedule.due(29 * ms)) == [24]
 
 
+@given(rates, st.integers(1, 7), st.lists(st.integers(1, 40), max_size=30))
+def test_late_ticks_come_in_bursts_and_none_is_lost(rate, burst, gaps):
+    schedule, at = TickSchedule(rate, 1e4 / rate, burst), 0
+    carried = list(schedule.due(0))
+    for gap in gaps:
+        at += gap
+        due = list(schedule.due(schedule.time_ns(at)))
+        assert len(due) <= burst
+        carried += due
+    while carried[-1:] != [at]:
+        due = list(schedule.due(schedule.time_ns(at)))
+        assert 0 < len(due) <= burst
+        carried += due
+    assert carried == list(range(at + 1))
+    assert schedule.missed == 0
+
+
+def test_what_comes_in_the_next_burst_is_late_too():
+    schedule, ms = TickSchedule(1000.0, 1.0, 3), 1_000_000
+    assert list(schedule.due(0)) == [0]
+    assert (list(schedule.due(5 * ms)), schedule.late) == ([1, 2, 3], 3)
+    assert (list(schedule.due(5 * ms)), schedule.late) == ([4, 5], 4)  # 5 is in time
+
+
 def test_without_catching_up_only_the_newest_tick_is_carried_out():
     schedule = TickSchedule(1000.0, 0.0)
     schedule.due(0)
