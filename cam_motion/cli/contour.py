@@ -31,6 +31,7 @@ from cam_motion.io.cam_disc_config import build_cam_discs, CamDiscSettings
 from cam_motion.io.config import read_sections
 from cam_motion.io.contour import (
     binding_text,
+    bore_problems,
     contour_figures,
     ContourFigures,
     disc_problems,
@@ -104,8 +105,8 @@ def run(arguments: argparse.Namespace) -> int:
     with progress() as bar:
         for name, settings in bar.track(discs.items(), description='contours'):
             figures = contour_figures(settings)
-            written = {} if settings.disc.undercuts else _write(
-                settings, kinds, arguments)
+            sound = not settings.disc.undercuts and not bore_problems(settings)
+            written = _write(settings, kinds, arguments) if sound else {}
             files += [Path(each['file']) for each in written.values()]
             if arguments.json:
                 data[name] = figures_as_data(settings, figures) | (

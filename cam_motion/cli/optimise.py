@@ -28,7 +28,7 @@ from cam_motion.cli.terminal import (
     table,
 )
 from cam_motion.errors import CamMotionError, ConfigurationError, Problem
-from cam_motion.io.config import read_sections
+from cam_motion.io.config import read_sections, section_yaml, segment_yaml
 from cam_motion.io.optimise import (
     free_movement,
     Movement,
@@ -38,13 +38,14 @@ from cam_motion.io.optimise import (
     SPLINE,
     Wish,
 )
-from cam_motion.io.optimise_machine import movement_of, section_yaml, segment_yaml, with_law
+from cam_motion.io.optimise_machine import movement_of, with_law
 from cam_motion.motion.limits import Limits, QUANTITIES
 from cam_motion.motion.optimal import OBJECTIVES
 from cam_motion.motion.optimal_spline import INTERVALS
 from cam_motion.motion.optimal_stages import FAMILIES
 from cam_motion.units import DEGREE, rate_text, RPM
 
+_LONG = 16  # letters of a name in the heading of a column
 _RATES = QUANTITIES[1:]
 
 
@@ -204,6 +205,11 @@ def _write(arguments: argparse.Namespace, found: Optimised, text: str) -> list[P
     return files
 
 
+def _broken(name: str) -> str:
+    """Break a long name, so that two of them fit beside each other in 80 columns."""
+    return name if len(name) <= _LONG else name.replace('_', '_\n')
+
+
 def _print(found: Optimised) -> None:
     movement, before, after = found.movement, found.before, found.after
     limits = [movement.limits.of_order(order) for order in (1, 2, 3)]
@@ -211,9 +217,9 @@ def _print(found: Optimised) -> None:
         f'{movement.name}: {number(movement.lift)} {movement.unit} in '
         f'{number(movement.span / DEGREE)} deg at {number(movement.omega / RPM)} cycles/min, '
         f'least {_goal(found.wish.weights)}', [
-            ('', 'left'), (f'before\n{movement.law}', 'right'),
-            (f'after\n{found.law.name}', 'right'), ('change', 'right'), ('limit', 'right'),
-            ('', 'left')])
+            ('', 'left'), (f'before\n{_broken(movement.law)}', 'right'),
+            (f'after\n{_broken(found.law.name)}', 'right'), ('change', 'right'),
+            ('limit', 'right'), ('', 'left')])
     torques = [(f'{kind} motor torque', f'{kind.lower()}_torque', 1.0, None, 'N m')
                for kind in ('Peak', 'RMS') if f'{kind.lower()}_torque' in after]
     lines = [

@@ -15,6 +15,8 @@ from pathlib import Path
 
 from cam_motion.errors import ConfigurationError, Problem
 
+_LARGEST = 1e30  # of a number that no machine needs, and whose powers still are numbers
+
 
 def add_config(parser: argparse.ArgumentParser) -> None:
     """
@@ -76,7 +78,7 @@ def finite_number(text: str) -> float:
     Raises
     ------
     argparse.ArgumentTypeError
-        When it is no finite number.
+        When it is no finite number, or so large or small that its powers are none.
 
     """
     try:
@@ -85,6 +87,9 @@ def finite_number(text: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f'{text!r}: must be a finite number')
+    if value and not 1.0 / _LARGEST <= abs(value) <= _LARGEST:
+        raise argparse.ArgumentTypeError(
+            f'{text!r}: must be 0, or from {1.0 / _LARGEST:g} to {_LARGEST:g} in magnitude')
     return value
 
 

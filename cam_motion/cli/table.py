@@ -26,7 +26,7 @@ from cam_motion.cli.table_output import (
 from cam_motion.cli.terminal import print_files, print_json, save_figure
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import build_axis, CoupledAxis
-from cam_motion.io.config import read_sections
+from cam_motion.io.config import read_sections, section_yaml
 from cam_motion.io.tables import (
     CamTable,
     CYCLES,
@@ -44,7 +44,7 @@ from cam_motion.io.tables.export import (
     ExportOptions,
 )
 from cam_motion.io.tables.lint import Finding, lint, NOTE
-from cam_motion.io.tables.repair import as_yaml, import_table, ImportedCam
+from cam_motion.io.tables.repair import import_table, ImportedCam
 from cam_motion.io.tables.text import DELIMITERS
 from cam_motion.units import DEGREE, RPM, TURN
 
@@ -264,7 +264,7 @@ def run_import(arguments: argparse.Namespace) -> int:
     table = made.table
     how = (f'repaired within {arguments.repair:g} {arguments.unit}' if arguments.repair else
            'through every point')
-    text = as_yaml(arguments.axis, made.section, [
+    text = section_yaml(arguments.axis, made.section, [
         f'Cam table {Path(arguments.file).name}, {len(table.angle)} points, {how}: '
         f'{made.points} points,', f'largest deviation {made.deviation:.3g} {arguments.unit}, '
         f'class C{made.after.continuity}.'])

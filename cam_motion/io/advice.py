@@ -290,6 +290,8 @@ def _tried(question: Question, law: MotionLaw) -> Candidate:
         legal = not any(low - _ROUNDING <= at + turn <= high + _ROUNDING
                         for at in steps for turn in (0.0, TURN))
     figures = _figures(question, law, curve, legal)
+    if not configured and figures['peak_velocity'] == 0.0:
+        return Candidate(law, refusal='would stand still: the lift is 0')
     if question.load is not None:
         figures['residual'] = _residual(question, cam, curve, question.load)
     if question.drive is not None and cam is not None:

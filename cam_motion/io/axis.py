@@ -291,7 +291,8 @@ def _settings(values: Values, limits: Limits) -> FollowerSettings:
         timing('engage'), timing('disengage'), timing('change'), timing('resume'),
         master_relative=values['engage.master'] == 'relative',
         slave_relative=values['engage.slave'] == 'relative',
-        start_position=values['start_position'], stop_position=values['disengage.position'])
+        start_position=values['start_position'], stop_position=values['disengage.position'],
+        obeyed=values['follows'] == axis_parameters.SHAFT)
 
 
 def _build_cam(given: Values) -> tuple[CamProfile, Coupling]:

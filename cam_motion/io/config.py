@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 import re
 from typing import Any
@@ -21,6 +21,7 @@ import yaml
 
 _HINT = 'a machine file has a key per node, and ros__parameters: below each'
 _EVERY_NODE = '/**'
+_WIDTH = 74  # the writer folds after the number that crosses it
 
 
 class _Loader(yaml.SafeLoader):
@@ -222,3 +223,55 @@ def load_machine(path: str | Path) -> Machine:
 
     """
     return build_machine(read_sections(path))
+
+
+def segment_yaml(name: str, values: Mapping[str, Any]) -> str:
+    """
+    Write a segment as a machine file has it.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    values : Mapping[str, Any]
+        Its parameters.
+
+    Returns
+    -------
+    str
+        YAML; every number so exact that reading gives it back.
+
+    """
+    return str(yaml.safe_dump({name: dict(values)}, default_flow_style=None, sort_keys=False,
+                              width=_WIDTH))
+
+
+def section_yaml(name: str, given: Values, remark: Iterable[str] = ()) -> str:
+    """
+    Write the section of a node as a machine file has it.
+
+    Parameters
+    ----------
+    name : str
+        Name of the node.
+    given : Mapping[str, Any]
+        Its parameters by flat name.
+    remark : Iterable[str]
+        Lines of a comment at the head.
+
+    Returns
+    -------
+    str
+        YAML, itself a machine file.
+
+    """
+    tree: dict[str, Any] = {}
+    for key, value in given.items():
+        *above, last = key.split('.')
+        level = tree
+        for each in above:
+            level = level.setdefault(each, {})
+        level[last] = value
+    text = yaml.safe_dump({name: {'ros__parameters': tree}}, default_flow_style=None,
+                          sort_keys=False, width=_WIDTH)
+    return ''.join(f'# {line}\n' for line in remark) + str(text)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+import math
 from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
@@ -141,7 +142,7 @@ def _force(settings: CamDiscSettings) -> ForceFigures | None:
 
 def disc_problems(settings: CamDiscSettings) -> list[Problem]:
     """
-    Say what is wrong with a disc that can be built: undercutting, limits, lift-off.
+    Say what is wrong with a disc that can be built: undercutting, limits, bore, lift-off.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ def disc_problems(settings: CamDiscSettings) -> list[Problem]:
         Everything that is wrong, paths relative to its section.
 
     """
-    problems = limit_problems(settings.disc, settings.limits)
+    problems = limit_problems(settings.disc, settings.limits) + bore_problems(settings)
     force, least_force = settings.force, settings.least_force
     if force is None or settings.groove:
         return problems
@@ -170,6 +171,31 @@ def disc_problems(settings: CamDiscSettings) -> list[Problem]:
             + ('the follower lifts off' if least.value <= 0.0 else 'less must not be left'),
             _firmer(settings)))
     return problems
+
+
+def bore_problems(settings: CamDiscSettings) -> list[Problem]:
+    """
+    Say whether the bore, or its keyway, cuts through the contour.
+
+    Parameters
+    ----------
+    settings : CamDiscSettings
+        The disc.
+
+    Returns
+    -------
+    list[Problem]
+        The problem, its path relative to the section; empty where there is none.
+
+    """
+    bore, key = settings.bore_radius, settings.keyway
+    if bore is None:
+        return []
+    outermost = bore if key is None else math.hypot(bore + key.depth, 0.5 * key.width)
+    nearest = settings.disc.nearest
+    return [] if outermost < nearest else [Problem(
+        'bore_radius', bore, f'bore and keyway reach {outermost:g} m from the shaft, the '
+        f'contour comes as near as {nearest:.6g} m', 'a smaller bore, or a larger disc')]
 
 
 def _firmer(settings: CamDiscSettings) -> str:

@@ -13,8 +13,9 @@ import math
 from pathlib import Path
 from typing import Any, NamedTuple, TYPE_CHECKING
 
-from cam_motion.errors import CamMotionError, ConfigurationError, Problem
+from cam_motion.errors import CamMotionError, ConfigurationError
 from cam_motion.io.cam_disc_config import CamDiscSettings
+from cam_motion.io.contour import bore_problems
 from cam_motion.mechanism.cam_follower import Points
 from cam_motion.mechanism.cam_outline import CubicSpline, Outline, outline, spline
 from cam_motion.mechanism.cam_pose import follower_pose
@@ -85,7 +86,8 @@ def write_dxf(settings: CamDiscSettings, path: Path, tolerance: float | None = N
     from ezdxf.filemanagement import new
     disc = settings.disc
     tolerance = settings.tolerance if tolerance is None else tolerance
-    _check_bore(settings)
+    if problems := bore_problems(settings):
+        raise ConfigurationError(problems)
     outer = 2.0 * disc.follower.roller_radius if settings.groove else None
     drawing = Drawing(outline(disc, tolerance), spline(disc, tolerance),
                       None if outer is None else outline(disc, tolerance, outer),
@@ -114,19 +116,6 @@ def write_dxf(settings: CamDiscSettings, path: Path, tolerance: float | None = N
     except OSError as error:
         raise CamMotionError(f'{path}: cannot be written: {error.strerror or error}') from error
     return drawing
-
-
-def _check_bore(settings: CamDiscSettings) -> None:
-    """Refuse a bore, or a keyway, that cuts through the contour."""
-    bore, key = settings.bore_radius, settings.keyway
-    if bore is None:
-        return
-    outermost = bore if key is None else math.hypot(bore + key.depth, 0.5 * key.width)
-    nearest = settings.disc.nearest
-    if outermost >= nearest:
-        raise ConfigurationError([Problem(
-            'bore_radius', bore, f'bore and keyway reach {outermost:g} m from the shaft, the '
-            f'contour comes as near as {nearest:.6g} m', 'a smaller bore, or a larger disc')])
 
 
 def _points(points: Points) -> list[tuple[float, float]]:

@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 import math
 from typing import Any
 
@@ -26,10 +26,8 @@ from cam_motion.motion.piecewise import Piecewise
 from cam_motion.motion.profile import CamProfile
 from cam_motion.motion.shaped_profile import ShapedProfile
 from cam_motion.units import RPM
-import yaml
 
 _AT_REST = (1e-9, 1e-8, 1e-7)  # s', s'', s''' as small as this are rounding of zero
-_WIDTH = 84  # the writer folds after the number that crosses it
 
 
 def movement_of(sections: Mapping[str, Values], path: str, speed_cpm: float | None = None,
@@ -166,55 +164,3 @@ def with_law(sections: Mapping[str, Values], found: Optimised) -> tuple[str, dic
             own |= {f'{rest}.{name}': each for name, each in new.items()}
     build_axis(axis, own)
     return axis, own
-
-
-def segment_yaml(name: str, values: Mapping[str, Any]) -> str:
-    """
-    Write a segment as a machine file has it.
-
-    Parameters
-    ----------
-    name : str
-        Its name.
-    values : Mapping[str, Any]
-        Its parameters.
-
-    Returns
-    -------
-    str
-        YAML; every number so exact that reading gives it back.
-
-    """
-    return str(yaml.safe_dump({name: dict(values)}, default_flow_style=None, sort_keys=False,
-                              width=_WIDTH))
-
-
-def section_yaml(name: str, given: Values, remark: Iterable[str] = ()) -> str:
-    """
-    Write the section of a node as a machine file has it.
-
-    Parameters
-    ----------
-    name : str
-        Name of the node.
-    given : Mapping[str, Any]
-        Its parameters by flat name.
-    remark : Iterable[str]
-        Lines of a comment at the head.
-
-    Returns
-    -------
-    str
-        YAML, itself a machine file.
-
-    """
-    tree: dict[str, Any] = {}
-    for key, value in given.items():
-        *above, last = key.split('.')
-        level = tree
-        for each in above:
-            level = level.setdefault(each, {})
-        level[last] = value
-    text = yaml.safe_dump({name: {'ros__parameters': tree}}, default_flow_style=None,
-                          sort_keys=False, width=_WIDTH)
-    return ''.join(f'# {line}\n' for line in remark) + str(text)

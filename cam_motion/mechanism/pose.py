@@ -10,13 +10,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+import math
 from typing import NamedTuple
 
 from cam_motion.errors import CamMotionError
 from cam_motion.mechanism.linkage import Linkage
 from cam_motion.mechanism.singular import Singularity
 from cam_motion.motion.piece import Array
-from cam_motion.units import DEGREE
+from cam_motion.units import DEGREE, TURN
+
+_EXACT = 1e9  # rad up to which whole turns can be taken off and leave enough digits
 
 
 @dataclass(frozen=True)
@@ -159,6 +162,34 @@ class SingularError(CamMotionError):
         """Keep the position and the name of what happens there."""
         self.pose, self.singularity = pose, singularity
         super().__init__(f'{pose.text} is a singular position: {singularity.text}')
+
+
+def whole_turns(linkage: Linkage, name: str, way: float, bounds: Range) -> float:
+    """
+    Give the part of a way that leads a crank back to where it was, time and again.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        The linkage.
+    name : str
+        An input.
+    way : float
+        How far it is to go [m, rad].
+    bounds : Range
+        How far it can go.
+
+    Returns
+    -------
+    float
+        Whole turns [rad]; 0 for a length, for what cannot turn all the way round, and for a way
+        so long that too few digits would be left of it.
+
+    """
+    through = bounds.low == -math.inf and bounds.high == math.inf
+    if name not in linkage.angles or not through or not abs(way) < _EXACT:
+        return 0.0
+    return TURN * round(way / TURN)
 
 
 def bound_text(linkage: Linkage, name: str, value: float) -> str:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from cam_motion.errors import Problem
 from cam_motion.mechanism.assembly import Assembly
-from cam_motion.mechanism.pose import Pose, Range, SingularError
+from cam_motion.mechanism.pose import Pose, Range, SingularError, whole_turns
 from cam_motion.motion.piece import Array
 import numpy as np
 
@@ -56,6 +56,24 @@ class Tracker:
         for name in self.assembly.linkage.inputs:
             if name not in self._ranges:
                 self._ranges[name] = self.assembly.range_of(name)
+
+    def unwind(self, inputs: Sequence[float]) -> None:
+        """
+        Turn cranks that turn all the way round by whole turns, to where their inputs are.
+
+        An axis that has been running counts its turns; to go through them all would take for ever.
+
+        Parameters
+        ----------
+        inputs : Sequence[float]
+            All inputs, in the order of the linkage [m, rad].
+
+        """
+        self.prepare()
+        z = self._reached.z.copy()
+        for k, (name, value) in enumerate(zip(self.assembly.linkage.inputs, inputs)):
+            z[k] += whole_turns(self.assembly.linkage, name, value - z[k], self._ranges[name])
+        self._foothold = self._reached = self._reached._replace(z=z)
 
     def follow(self, inputs: Sequence[float]) -> Pose | None:
         """

@@ -164,7 +164,7 @@ def program_continuity(segments: Sequence[Segment]) -> Continuity:
     return _judge(matched, parts, math.fsum(each.lift for each in segments))
 
 
-def curve_joints(curve: Piecewise) -> list[Joint]:
+def curve_joints(curve: Piecewise, advance: float | None = None) -> list[Joint]:
     """
     Judge every joint inside a curve.
 
@@ -172,16 +172,20 @@ def curve_joints(curve: Piecewise) -> list[Joint]:
     ----------
     curve : Piecewise
         The curve.
+    advance : float | None
+        What it gains in each cycle, where it repeats itself: then its seam is a joint, too.
 
     Returns
     -------
     list[Joint]
-        One per inner joint, from left to right.
+        The seam, at the start, and one per inner joint, from left to right.
 
     """
     scales = _scales(curve)
-    return [_joint(left, right, at, scales, scales)
-            for left, right, at in zip(curve.pieces, curve.pieces[1:], curve.breaks[1:])]
+    seam = [] if advance is None else [_joint(
+        curve.pieces[-1], curve.pieces[0], curve.start, scales, scales, advance)]
+    return seam + [_joint(left, right, at, scales, scales)
+                   for left, right, at in zip(curve.pieces, curve.pieces[1:], curve.breaks[1:])]
 
 
 def _judge(segments: Sequence[Segment], parts: Sequence[Piecewise], advance: float) -> Continuity:

@@ -129,7 +129,7 @@ def superposed(curves: Sequence[tuple[float, Piecewise]]) -> Piecewise:
     Parameters
     ----------
     curves : Sequence[tuple[float, Piecewise]]
-        Weights and curves, at least one, all from the same start to the same end.
+        Weights and curves, at least one, all over the same range but for rounding.
 
     Returns
     -------
@@ -149,7 +149,7 @@ def superposed(curves: Sequence[tuple[float, Piecewise]]) -> Piecewise:
         middle = 0.5 * (low + high)
         parts = []
         for weight, curve in curves:
-            n = int(np.searchsorted(curve.breaks, middle)) - 1
+            n = int(np.searchsorted(curve.breaks[1:-1], middle))
             begin = curve.breaks[n]
             parts.append((weight, cut(curve.pieces[n], low - begin, high - begin)))
         pieces.append(total(parts))

@@ -37,6 +37,7 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 from visualization_msgs.msg import MarkerArray
 
+_FIRST = 100  # ticks' worth of way that the first one may take, to where the axes begin
 _OUTLIVES = 3.0  # markers outlive that many of their periods,
 _LEAST_LIFE = 1.0  # and at least this long [s]
 
@@ -101,7 +102,6 @@ class LinkageState(ManagedNode):
             max(_LEAST_LIFE, _OUTLIVES / hz if hz else 0.0))
         self._time = TimeBase(self)
         self._answered = self._held = self._refused = 0
-        self._reason = ''
         self._states = self.make_publisher(JointState, '~/joint_states', SETPOINTS)
         self._drawing = self.make_publisher(MarkerArray, '~/markers', SETPOINTS)
         self._rest()
@@ -120,6 +120,7 @@ class LinkageState(ManagedNode):
         start = self._tracker.assembly.start
         self._inputs = [start[name] for name in self._settings.linkage.inputs]
         self._rates = np.zeros(len(start.values))
+        self._begun, self._reason = False, ''
 
     def cleanup(self) -> None:
         """Drop the topics."""
@@ -166,9 +167,14 @@ class LinkageState(ManagedNode):
                 point = points[drive.axis]
                 self._inputs[k] = drive.offset + drive.factor * point.position
                 speeds[k] = drive.factor * point.velocity
-        reached = tracker.follow(self._inputs)
-        while reached is None and not self._answered and tracker.refusal is None:
-            reached = tracker.follow(self._inputs)  # from the start to where the axes begin
+        if not self._begun:
+            tracker.unwind(self._inputs)
+        reached = None
+        for _ in range(1 if self._begun else _FIRST):
+            reached = tracker.follow(self._inputs)
+            if reached is not None or tracker.refusal is not None:
+                break
+        self._begun = True
         if reached is not None:
             self._rates = tracker.rates(speeds)
             self._answered += 1

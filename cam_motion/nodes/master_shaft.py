@@ -17,12 +17,12 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError
 from cam_motion.io.axis import names_in
-from cam_motion.io.axis_limits import axes_of, CascadedAxis, ramp_room
 from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.machine import build_master
 from cam_motion.io.parameters import MASTER_SHAFT, ParameterSpec
 from cam_motion.io.tracks import track_table
 from cam_motion.nodes import diagnostics
+from cam_motion.nodes.axes_beside import AxesBeside, reckon, Reckoning
 from cam_motion.nodes.encoder_input import EncoderInput
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.parameters import section_of, values_of
@@ -112,14 +112,12 @@ class MasterShaft(ManagedNode):
         self.make_subscription(
             Float64, '~/speed_cpm', lambda message: self._set_speed(message.data), SETPOINTS)
         sections = self.sections()
-        known, wanted = axes_of(sections), checked['obey'] or list(sections)
-        self._shaft.room = ramp_room(known[name] for name in wanted if name in known)
-        for name in wanted:
-            if isinstance(axis := known.get(name), CascadedAxis) and axis.speed_bound is not None:
-                # it knows what it follows only; what that means for the shaft is known here
-                self.obey(name, axis.speed_bound.omega)
+        wanted = checked['obey'] or list(sections)
+        reckoning = reckon(sections, wanted)
+        self._axes = AxesBeside(self, sections, wanted, self._on_reckoned) if sections else None
+        self._on_reckoned(reckoning)
         for axis in wanted if self._own_process else ():
-            if isinstance(known.get(axis), CascadedAxis):
+            if axis in reckoning.cascaded:
                 continue
             self.make_subscription(Float64, f'{axis}/max_speed_cpm', partial(
                 lambda message, axis: self.obey(axis, message.data * RPM), axis=axis), LATCHED)
@@ -127,6 +125,14 @@ class MasterShaft(ManagedNode):
         for name, done in (('stop_at_cycle_end', 'stops at the end of a cycle'),
                            ('quick_stop', 'stops quickly'), ('reset', 'is ready to run')):
             self.make_service(Trigger, f'~/{name}', self._command(name, done))
+
+    def _on_reckoned(self, reckoning: Reckoning) -> None:
+        """Reckon with axes as they are now."""
+        self._shaft.make_room(self._now, reckoning.room)
+        for name, omega in reckoning.cascaded.items():
+            # the way to another coupling is planned for the speed allowed before it, at most
+            most = math.inf if reckoning.final else self._allowed.get(name, math.inf)
+            self.obey(name, min(omega, most))
 
     def obey(self, axis: str, omega: float) -> None:
         """
@@ -252,6 +258,8 @@ class MasterShaft(ManagedNode):
 
     def _tick(self, time_ns: int) -> None:
         t = time_ns * 1e-9
+        if self._axes is not None:
+            self._axes.tick(t)
         if self._encoder is not None:
             self._now = t
             state = self._encoder.tick(t)

@@ -367,7 +367,7 @@ class Follower:
         ours = self.layout.speed_bound(self.settings.limits)
         bounds = [b for b in (bound, ours) if b is not None]
         pace = pace_of(shaft, min(bounds, key=lambda b: b.omega, default=None),
-                       self.settings.shaft_ramp)
+                       self.settings.shaft_ramp, self.settings.obeyed)
         plan = plan_transition(old, target, shaft, timing, pace, self.settings.limits,
                                ends_at=through is FollowerState.DISENGAGED)
         if isinstance(plan.goal, Layout):

@@ -53,6 +53,8 @@ class FollowerSettings:
         Where an axis stands that is not engaged from the start.
     stop_position : float | None
         Where the axis is to stand when disengaged; None stops it where it is.
+    obeyed : bool
+        Whether the shaft can be asked to run no faster than a transition bears.
 
     """
 
@@ -66,3 +68,4 @@ class FollowerSettings:
     slave_relative: bool = False
     start_position: float = 0.0
     stop_position: float | None = None
+    obeyed: bool = True

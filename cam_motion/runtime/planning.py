@@ -26,6 +26,7 @@ from cam_motion.units import DEGREE, rate_text, RPM, TURN
 
 _GROWTH = 1.25  # from one span that is too short to the next that is tried
 _LOOKS = 24  # places within one turn at which the soonest transition is looked for
+_OBEYS_WITHIN = 0.05  # how soon the shaft hears what it may [s]
 _AT_ANGLE = 1e-9  # an angle this near [rad] counts as reached
 
 
@@ -134,7 +135,8 @@ class Pace(NamedTuple):
     sense: float
 
 
-def pace_of(state: ShaftState, bound: SpeedBound | None, ramp: RampLimits) -> Pace:
+def pace_of(state: ShaftState, bound: SpeedBound | None, ramp: RampLimits,
+            obeyed: bool = True) -> Pace:
     """
     Choose the speeds that a transition begun now must reckon with.
 
@@ -146,18 +148,25 @@ def pace_of(state: ShaftState, bound: SpeedBound | None, ramp: RampLimits) -> Pa
         Up to which the axis lets the shaft run.
     ramp : RampLimits
         Acceleration and jerk of the shaft to leave room for.
+    obeyed : bool
+        Whether the shaft can be asked to run no faster.
 
     Returns
     -------
     Pace
-        At steady speed that speed alone, because the shaft obeys when asked to run no faster. A
-        shaft that is changing its speed may be on its way to whatever the axis allows.
+        The speed that it has or, while it accelerates, cannot but come to: a shaft that obeys
+        runs no faster when asked. One that accelerates may be on its way to whatever the axis
+        allows, and one that does not obey comes to it.
 
     """
     speed, sense = abs(state.omega), -1.0 if state.omega < 0.0 else 1.0
     fastest = speed if bound is None else max(speed, bound.omega)
-    if state.alpha != 0.0:
+    if not obeyed:
         return Pace(fastest, fastest, ramp, sense)
+    rise = sense * state.alpha
+    if rise > 0.0:
+        ahead = speed + rise * (_OBEYS_WITHIN + 0.5 * rise / ramp.jerk)
+        return Pace(min(ahead, fastest), fastest, ramp, sense)
     return Pace(speed, speed or fastest, ramp, sense)
 
 

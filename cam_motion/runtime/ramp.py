@@ -81,6 +81,29 @@ def speed_ramp(omega: float, alpha: float, target: float, limits: RampLimits) ->
     return [step for step in steps if step.duration > 0.0]
 
 
+def ramp_time(change: float, limits: RampLimits) -> float:
+    """
+    Tell how long the fastest ramp takes that begins and ends without acceleration.
+
+    Parameters
+    ----------
+    change : float
+        Change of speed, a magnitude [rad/s].
+    limits : RampLimits
+        Limits on acceleration and jerk.
+
+    Returns
+    -------
+    float
+        Its duration [s].
+
+    """
+    bound, jerk = limits
+    if bound * bound < jerk * change:
+        return change / bound + bound / jerk
+    return 2.0 * math.sqrt(change / jerk)
+
+
 def leads_to(omega: float, alpha: float, target: float, limits: RampLimits) -> bool:
     """
     Tell whether a speed can be reached without taking the acceleration under way back first.

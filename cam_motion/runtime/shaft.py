@@ -176,6 +176,22 @@ class Shaft:
         if self.mode(t) is ShaftMode.RUNNING:
             self._motion = self._ramp(t, self.target)
 
+    def make_room(self, t: float, room: RampRoom | None) -> None:
+        """
+        Soften ordinary ramps for the sake of other axes; a ramp to the set speed does so at once.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        room : RampRoom | None
+            What their limits leave.
+
+        """
+        self.room = room
+        if self.mode(t) is ShaftMode.RUNNING and t < self.settled_at:
+            self._motion = self._ramp(t, self.target)
+
     @property
     def target(self) -> float:
         """Give the speed at which it runs: the set speed, as far as it is allowed [rad/s]."""

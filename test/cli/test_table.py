@@ -125,6 +125,8 @@ def test_a_table_is_converted(cam_motion, read_json, press, tmp_path):
     (['lint', 'none.csv'], 'cannot be read'),
     (['import', 'FILE', '--repair', '-1'], 'above 0'),
     (['import', 'FILE', '--slave-scale', '0'], 'must not be 0'),
+    (['lint', 'FILE', '--speed-cpm', '1e300'], 'from 1e-30 to 1e+30'),
+    (['lint', 'FILE', '--speed-cpm', '1e-300'], 'from 1e-30 to 1e+30'),
     (['lint', 'FILE', '--drop', 'x'], 'line numbers'),
     (['export', 'CONFIG', 'nobody', '--format', 'csv'], 'feeder, press, knife'),
     (['export', 'CONFIG', 'knife', '--format', 'isg'], 'invalid choice'),

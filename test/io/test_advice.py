@@ -231,6 +231,13 @@ def test_neighbours_that_move_are_met_by_the_law_auto():
     assert refused['cycloidal'] == 'ends at rest, its neighbour there is at constant velocity'
 
 
+def test_standing_still_is_no_advice_for_a_table_that_comes_back():
+    asked, = questions(read_sections(CONFIG / 'table_cam.yaml'), ['press'])
+    advice = advise(asked)
+    assert names(advice.ranking) == ['spline'] and advice.stepping == ()
+    assert {each.refusal for each in advice.refused} >= {'would stand still: the lift is 0'}
+
+
 def test_movements_are_found_by_name():
     sections = read_sections(CONFIG / 'cutting_machine.yaml')
     assert [each.name for each in questions(sections)] == [

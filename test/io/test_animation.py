@@ -223,6 +223,16 @@ def test_a_line_drives_its_linkage():
     assert arrows.vectors[:, list(arrows.names).index('B')] == pytest.approx(-1j * speed)
 
 
+def test_turns_that_a_crank_had_made_before_the_run_are_not_gone_through():
+    machine = load_machine(CONFIG / 'slider_crank.yaml')
+    settings = machine.linkages['slider_crank']
+    course = cycle_of(machine, SHORT)
+    before = [[86400 * math.tau], [0.0], [0.0]]
+    later = replace(course, axes={'motor': course.axes['motor'] + before})
+    ways = [driven_film(settings, each).drawing.arrows[0].feet for each in (course, later)]
+    assert np.abs(ways[1] - ways[0]).max() < 1e-9
+
+
 # ---- axes ---------------------------------------------------------------------------------------
 def test_axes_are_shown_where_their_cams_are(cycle):
     film = axes_film(CUTTING, cycle)

@@ -281,6 +281,7 @@ def test_a_bore_that_cuts_the_contour_is_refused(tmp_path):
     settings = build_cam_discs(parse_sections(text))[0]['press_cam']
     with pytest.raises(ConfigurationError, match='bore and keyway reach 0.041'):
         write_dxf(settings, tmp_path / 'cam.dxf')
+    assert [problem.path for problem in disc_problems(settings)] == ['bore_radius']
 
 
 @pytest.mark.parametrize('write', [write_csv, write_dxf])

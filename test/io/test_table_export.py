@@ -12,8 +12,9 @@ import math
 
 from cam_motion.errors import CamMotionError, ConfigurationError
 from cam_motion.io.axis import build_axis
-from cam_motion.io.config import read_sections
+from cam_motion.io.config import read_sections, section_yaml
 from cam_motion.io.tables import (
+    export,
     FORMATS,
     RawTable,
     read_table,
@@ -24,9 +25,10 @@ from cam_motion.io.tables import (
 )
 from cam_motion.io.tables.export import CamToExport, export_cam, ExportOptions
 from cam_motion.io.tables.lint import lint
-from cam_motion.io.tables.repair import as_yaml, figures_of, import_table
+from cam_motion.io.tables.repair import figures_of, import_table
 from cam_motion.io.tables.table import to_cam
 from cam_motion.motion.laws import make_law
+from cam_motion.motion.piecewise import Peak
 from cam_motion.motion.profile import CamProfile
 from cam_motion.motion.segment import segment
 from cam_motion.units import DEGREE, RPM, TURN
@@ -34,6 +36,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+import yaml
 
 pytestmark = pytest.mark.timeout(60)
 
@@ -126,13 +129,22 @@ def test_peaks_of_a_table_that_is_interpolated_linearly_are_infinite():
     assert figures_of(table(DEGREES, y).curve(), 0.0).continuity == -1
 
 
+@pytest.mark.parametrize(('degree', 'continuity'), [(3, 2), (5, 4)])
+def test_the_class_of_a_table_of_many_points_is_that_of_its_spline(degree, continuity):
+    degrees = np.linspace(0.0, 360.0, 5001)
+    y = np.round(positions(press('polynomial_345'), degrees), 9)
+    made = import_table(table(degrees, y), 'press', 'mm', degree=degree)
+    assert made.after.continuity == continuity
+    assert math.isfinite(made.after.peaks[2].value)
+
+
 def test_the_section_is_a_machine_file_that_makes_the_same_cam(tmp_path):
     v, a = (press().curve(DEGREES[::5] * DEGREE, order) * DEGREE**order for order in (1, 2))
     four = table(DEGREES[::5], positions()[::5], v, a, interpolation='quintic')
     noisy = table(DEGREES, np.round(positions(), 2))
     for made in (import_table(noisy, 'press', 'mm', 0.01), import_table(four, 'press', 'mm')):
         file = tmp_path / 'press.yaml'
-        write_text(file, as_yaml('press', made.section, ['a remark']))
+        write_text(file, section_yaml('press', made.section, ['a remark']))
         assert all(len(line) <= 99 for line in file.read_text().splitlines())
         axis = build_axis('press', read_sections(file)['press'])
         at = np.linspace(0.0, TURN, 777)
@@ -140,6 +152,13 @@ def test_the_section_is_a_machine_file_that_makes_the_same_cam(tmp_path):
     assert 'velocities' in made.section['curve']
     with pytest.raises(CamMotionError, match='cannot be written'):
         write_text(tmp_path / 'press.yaml' / 'x', '')
+
+
+def test_any_reader_of_yaml_finds_numbers_and_texts(tmp_path):
+    made = import_table(table(DEGREES, 1e-20 * np.round(positions() * 10.0)), 'press', 'no')
+    read = yaml.safe_load(section_yaml('press', made.section))['press']['ros__parameters']
+    assert read['unit'] == 'no'
+    assert read['curve']['positions'] == made.section['curve']['positions']
 
 
 def test_a_segment_of_a_machine_file_may_be_a_table():
@@ -206,6 +225,19 @@ def test_the_fewest_points_that_hold_a_tolerance_are_found(name, tolerance):
     assert abs(made.deviations[0].value) <= tolerance
     fewer = export_cam(cam(), name, ExportOptions(made.points - 1))
     assert abs(fewer.deviations[0].value) > tolerance
+
+
+def test_a_tolerance_hardly_above_rounding_is_decided_soon(monkeypatch):
+    tried = []
+
+    def counted(*arguments):
+        tried.append(arguments[-1])
+        return replace(finished(*arguments), deviations=(Peak(1.0, 0.0),) * 3)
+    finished = export._finished
+    monkeypatch.setattr(export, '_finished', counted)
+    with pytest.raises(ConfigurationError, match='with 1024 points it deviates by 1'):
+        export_cam(cam(), 'sew', ExportOptions(tolerance=0.01))
+    assert len(tried) < 12 and tried[-1] == 1024 and tried == sorted(tried)
 
 
 def test_a_rise_is_exported_by_itself():

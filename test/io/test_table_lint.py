@@ -10,7 +10,8 @@
 import math
 
 from cam_motion.io.tables import RawTable, TableOptions
-from cam_motion.io.tables.lint import lint, resolution_of
+from cam_motion.io.tables.lint import lint
+from cam_motion.io.tables.outliers import resolution_of
 from cam_motion.io.tables.table import to_cam
 from cam_motion.motion.profile import CamProfile
 from cam_motion.motion.segment import segment
@@ -149,6 +150,16 @@ def test_angles_that_fall_or_stand_twice_are_errors_with_their_lines():
     listed = found(x, positions())
     assert [(each.code, each.severity, each.line) for each in listed] == [
         ('duplicate_angle', 'error', 51), ('falling_angle', 'error', 72)]
+
+
+def test_a_table_turned_round_is_one_error():
+    each, = found(DEGREES[::-1], positions())
+    assert (each.code, each.line) == ('falling_angle', 2) and 'turn the order' in each.hint
+
+
+def test_a_turn_that_counts_two_pi_is_taken_for_radians():
+    each, = found(DEGREES * DEGREE, positions())
+    assert each.code == 'open_cycle' and '--angle-unit rad' in each.hint
 
 
 def test_a_table_that_ends_early_is_an_error():

@@ -102,6 +102,7 @@ def test_a_file_may_leave_out_the_last_point_and_start_anywhere(tmp_path):
     ('1,2,3,4,5\n2,3,4,5,6\n', ['line 1', 'line 2'], ['this has 5', 'this has 5']),
     ('', ['table.txt'], ['at least two points']), ('0,1\n', ['table.txt'], ['two points']),
     ('words\nand more\n', ['table.txt'], ['two points']),
+    ('0,0\n1_0,1\n٢٠,2\n360,0\n', ['line 2', 'line 3'], ['numbers only', 'numbers only']),
     ('TABLE_BEGIN;;\n0;0;SPLINE\n1;1;LINE\nTABLE_END;;\n', ['line 3'], ['X;Y;SPLINE']),
     ('TABLE_BEGIN;;\n0;0;SPLINE\n1;1;SPLINE\n', ['line 1'], ['without TABLE_END']),
     ('(dX := 0, dY := 0)\n(dX := 1, dY := a)\n', ['line 2'], ['finite numbers']),
@@ -116,6 +117,13 @@ def test_files_that_cannot_be_read_are_refused_line_by_line(tmp_path, text, plac
     assert len(problems) == len(places)
     for problem, place, word in zip(problems, places, words):
         assert problem.path.endswith(place) and word in problem.rule
+
+
+def test_rows_that_were_taken_for_a_heading_are_shown(tmp_path):
+    with pytest.raises(ConfigurationError) as caught:
+        saved(tmp_path, 'x;y\n0 deg;0 mm\n180 deg;1 mm\n360 deg;0 mm\n')
+    problem, = caught.value.problems
+    assert problem.value == 'rows of numbers: 0' and '360 deg; 0 mm' in problem.hint
 
 
 def test_a_file_that_is_no_text_or_not_there_is_refused(tmp_path):

@@ -81,6 +81,31 @@ def test_a_crank_may_turn_for_ever():
             0.0, abs=1e-11)
 
 
+@pytest.mark.parametrize('turns', [3, -3, 100_000])
+def test_turns_that_an_axis_has_counted_before_are_not_gone_through(turns):
+    tracker = Tracker(OTHERS[1])
+    inputs = [math.radians(200.0) + math.tau * turns]
+    tracker.unwind(inputs)
+    assert arrive(tracker, inputs) < 12
+    assert tracker.pose['theta2'] == inputs[0]
+    want = OTHERS[1].at({'theta2': math.radians(200.0)})
+    for name in ('theta3', 'x'):
+        assert tracker.pose[name] == pytest.approx(want[name], abs=1e-9)
+
+
+def test_what_cannot_turn_all_the_way_round_is_not_turned():
+    rocker = Assembly(four_bar(0.30, 0.10, 0.25, 0.35))  # its input swings
+    tracker = Tracker(rocker)
+    inputs = [rocker.start['theta2'] + math.tau]
+    tracker.unwind(inputs)
+    for _ in range(100):
+        assert tracker.follow(inputs) is None
+    assert 'theta2' in str(tracker.problems(inputs)[0])
+    tracker = Tracker(UMBRELLA)
+    tracker.unwind((1.0 + math.tau, 0.8))
+    assert arrive(tracker, (1.0, 0.8)) == 0
+
+
 def test_what_is_out_of_range_is_refused_and_the_last_position_kept():
     tracker = Tracker(UMBRELLA)
     tracker.prepare()

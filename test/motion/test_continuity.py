@@ -16,7 +16,7 @@ from cam_motion.motion.continuity import (
     HIGHEST_ORDER,
     program_continuity,
 )
-from cam_motion.motion.laws import LAWS, make_law
+from cam_motion.motion.laws import Boundary, LAWS, laws_between, make_law
 from cam_motion.motion.profile import CamProfile, VelocityStepError
 from cam_motion.motion.segment import segment
 from cam_motion.units import DEGREE, TURN
@@ -142,6 +142,54 @@ def test_programs_of_auto_segments_are_c2_everywhere(ends, random):
     program.append(segment('last', 360.0, -math.fsum(lifts), 'auto'))
     # of the smoothest curve not even jerk and snap step
     assert continuity_of(CamProfile(program)).weakest.continuity >= 4
+
+
+resting = st.sampled_from(laws_between(Boundary.REST, Boundary.REST))
+general = st.sampled_from(['polynomial', 'flexible_polynomial', 'spline', 'auto'])
+states = st.tuples(st.sampled_from([0.0, 0.0, 0.4, -0.7, 1.3]), st.sampled_from([0.0, 0.0, 2.0]))
+
+
+@st.composite
+def legal_programs(draw):
+    """Draw what happens at each joint, and laws between that are legal there."""
+    ends = [*draw(angles), 360]
+    told = draw(st.lists(states, min_size=len(ends), max_size=len(ends)))
+    lifts = draw(st.lists(st.sampled_from([-0.8, 0.3, 1.0]), min_size=len(ends),
+                          max_size=len(ends)))
+    program, laws = [], []
+    for n, (start, end, lift) in enumerate(zip([0, *ends], ends, lifts)):
+        (v0, a0), (v1, a1) = told[n], told[(n + 1) % len(ends)]
+        span = (end - start) * DEGREE
+        turned = {'start_velocity': v0, 'end_velocity': v1}
+        scaled = {key: v * span / lift for key, v in turned.items()}
+        bends = {key: a * span**2 / lift for key, a in (
+            ('start_acceleration', a0), ('end_acceleration', a1))}
+        own = {
+            'polynomial': scaled | bends, 'modified_sine_vv': scaled,
+            'flexible_polynomial': {
+                'velocities': [0.0, scaled['start_velocity'], 1.0, scaled['end_velocity']],
+                'accelerations': [
+                    0.0, bends['start_acceleration'], 1.0, bends['end_acceleration']]},
+            'spline': turned | {'start_acceleration': a0, 'end_acceleration': a1}}
+        if (v0, a0, v1, a1) == (0.0,) * 4:
+            law = draw(resting)
+        elif a0 == a1 == 0.0 and draw(st.booleans()):
+            law = 'modified_sine_vv'
+        else:
+            law = draw(general)
+        if law == 'auto' and laws[-1:] == ['auto'] or law == 'auto' and n in (0, len(ends) - 1):
+            law = 'polynomial'  # of two in a row nobody would tell their joint
+        laws.append(law)
+        program.append(segment(f's{n}', float(end), lift, law, **own.get(law, {})))
+    return program
+
+
+@settings(max_examples=60, deadline=None)
+@given(legal_programs())
+def test_legal_programs_between_any_states_are_c2_everywhere(program):
+    cam = CamProfile(program, accumulate=True)
+    assert continuity_of(cam).weakest.continuity >= 2
+    assert cam.jumps(0) == cam.jumps(1) == cam.jumps(2) == []
 
 
 @settings(max_examples=15, deadline=None)

@@ -10,9 +10,9 @@
 import math
 
 from cam_motion.errors import ConfigurationError, DomainError
-from cam_motion.motion.difference import difference, largest, stretch_of
+from cam_motion.motion.difference import difference, largest
 from cam_motion.motion.laws import make_law
-from cam_motion.motion.piece import Piece, Wave
+from cam_motion.motion.piece import Piece
 from cam_motion.motion.profile import CamProfile
 from cam_motion.motion.segment import segment
 from cam_motion.motion.spline import (
@@ -306,13 +306,6 @@ def test_a_table_that_makes_no_segment_is_refused(parameters, path, words):
 
 
 # Differences of exact curves.
-
-
-def test_a_stretch_of_a_piece_is_the_same_curve():
-    piece = Piece(2.0, (1.0, -2.0, 0.5, 0.1), (Wave(3.0, 0.4, -0.2),))
-    part = stretch_of(piece, 0.7, 0.9)
-    u = np.linspace(0.0, 0.9, 11)
-    assert part(u) == pytest.approx(piece(u + 0.7), abs=1e-13)
 
 
 @settings(max_examples=12)

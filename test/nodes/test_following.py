@@ -351,6 +351,18 @@ def test_the_master_keeps_the_limits_of_an_axis_that_follows_another(world):
     assert max(abs(point.acceleration) for point in setpoints) <= 5.0
     assert heard[-1].data == math.inf
     assert master.health()[1]['held_back_by'] == 'cam_axis'
+    # its own coupling and limits change while it runs; the way to another coupling is planned
+    # for the speed allowed before, which only other limits raise
+    for values, omega in (({'scale': 0.5}, alone / 3.0),
+                          ({'limits__acceleration': 1.25}, alone / 3.0 / math.sqrt(2.0)),
+                          ({'limits__acceleration': 2.5}, alone / 3.0)):
+        assert change(world, **values).successful
+        assert world.spin_until(lambda: nodes[1]._follower.plan is None)
+        assert world.spin_until(lambda: shaft[-1].velocity == pytest.approx(omega, rel=0.01)
+                                and shaft[-1].acceleration == 0.0), values
+    count = len(setpoints)
+    assert world.spin_until(lambda: len(setpoints) > count + 200)
+    assert max(abs(point.acceleration) for point in setpoints[count:]) <= 2.5
 
 
 def node_latched():

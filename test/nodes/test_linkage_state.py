@@ -216,6 +216,35 @@ def test_a_late_joiner_hears_the_state_and_deactivation_waits_anew(world, umbrel
     assert its.states[-1].position[0] == 1.2
 
 
+def test_a_linkage_that_is_held_says_so_again_after_it_was_deactivated(world, umbrella):
+    its = umbrella()
+    its.stay(lambda: its.said[-1:] == ['following'], 2.0)
+    its.stay(lambda: its.said[-1].startswith('held'), 2.3)
+    its.node.trigger_deactivate()
+    its.node.trigger_activate()
+    assert its.node.state_text == 'waiting' and 'reason' not in its.node.health()[1]
+    its.stay(lambda: its.said[-1].startswith('held'), 2.3)
+    its.stay(lambda: its.said[-1] == 'following', 2.0)
+
+
+def test_a_crank_that_has_been_turning_for_a_day_is_followed_at_once(world):
+    node = world.make(LinkageState, read_sections(CONFIG.with_name('slider_crank.yaml'))[
+        'slider_crank'], name='slider_crank')
+    node.trigger_configure()
+    node.trigger_activate()
+    states = world.listen(JointState, 'slider_crank/joint_states')
+    motor = world.speaker(JointTrajectoryPoint, 'motor/setpoint')
+    assert world.spin_until(lambda: any(
+        p.topic_name.endswith('/joint_states') and p.get_subscription_count()
+        for p in node.publishers))
+    angle = math.radians(90.0) + math.tau * 86400
+    motor.publish(pack_point(angle, 0.0, 0.0, 0, 0))
+    assert world.spin_until(lambda: states)
+    position = dict(zip(states[0].name, states[0].position))
+    assert position['theta2'] == angle
+    assert position['x'] == pytest.approx(math.sqrt(0.3 ** 2 - 0.1 ** 2), abs=1e-9)
+
+
 def test_rates_and_efforts_are_as_configured(world, umbrella):
     its = umbrella(joint_states_hz=100.0, markers_hz=50.0, **{
         'loads': ['rain'], 'rain.point': 'D', 'rain.force_y': -10.0})

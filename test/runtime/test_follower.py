@@ -414,6 +414,32 @@ def test_shaft_state_is_what_the_axis_saw():
     assert follower.engage().blend.start == 7.0
 
 
+@pytest.mark.parametrize('alpha', [-5.0, 1.0, 20.0])
+@pytest.mark.parametrize('name', ['disengage', 'engage', 'change'])
+def test_a_shaft_that_changes_its_speed_is_no_reason_to_refuse(name, alpha):
+    """What counts is what it may come to before it obeys, not the highest speed of the axis."""
+    layout = layout_of(PRESS, SMALL)
+    limits = Limits(acceleration=60.0)
+    fastest = layout.speed_bound(limits).omega
+    follower = make(layout, limits=limits, engaged=name != 'engage')
+    follower.answer(1.0, 0.5 * fastest, alpha)
+    other = replace(layout, couplings={n: Coupling(1.0, 0.3, 1.0, 0.0) for n in layout.couplings})
+    plan = follower.change(other) if name == 'change' else getattr(follower, name)()
+    assert plan.highest_speed > plan.speed >= 0.5 * fastest
+    assert plan.speed < 0.6 * fastest
+    assert follower.speed_bound.omega <= plan.highest_speed
+
+
+def test_a_shaft_that_does_not_obey_is_reckoned_with_at_the_highest_speed_of_the_axis():
+    layout = layout_of(PRESS, SMALL)
+    limits = Limits(acceleration=60.0)
+    fastest = layout.speed_bound(limits).omega
+    follower = make(layout, limits=limits, obeyed=False)
+    follower.answer(1.0, 0.3 * fastest, 0.0)
+    weaker = replace(layout, couplings={n: Coupling(1.0, 0.0, 0.5, 0.0) for n in layout.couplings})
+    assert follower.change(weaker).highest_speed >= fastest
+
+
 def test_the_shaft_is_held_back_while_a_transition_needs_it():
     """From standstill a short transition allows less than the cam: the axis says so meanwhile."""
     short = Timing(span=20.0 * DEGREE, longest=20.0 * DEGREE)

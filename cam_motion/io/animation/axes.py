@@ -60,7 +60,8 @@ def axes_film(machine: Machine, course: Course, only: str | None = None) -> Film
     names = list(course.axes) if only is None else [only]
     if not names:
         raise ConfigurationError([Problem(
-            '--output', None, 'no setpoint of any axis was recorded', 'record the whole line')])
+            'BAG', None, 'no setpoint of any axis of its machine file was recorded',
+            'record the whole line, or name another file with --config')])
     colours = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(course.axes)}
     units = {name: machine.diagram.axes[name].unit for name in names}
     if only is None:

@@ -20,6 +20,7 @@ from cam_motion.io.linkage_config import LinkageCase, LinkageSettings, rate_name
 from cam_motion.io.plots.linkage import away_from_middle, moving_points, NAME_AWAY, run_case
 from cam_motion.io.plots.style import COLOURS
 from cam_motion.mechanism.linkage_motion import LinkageMotion, sweep
+from cam_motion.mechanism.pose import whole_turns
 from cam_motion.motion.piece import Array
 from cam_motion.units import DEGREE
 import numpy as np
@@ -77,8 +78,13 @@ def driven_film(settings: LinkageSettings, course: Course) -> Film:
         When a singular position is in the way.
 
     """
+    assembly = settings.assembly
     inputs = _driven(settings, course)
-    motions = sweep(settings.assembly, {name: each[0] for name, each in inputs.items()},
+    for name, each in inputs.items():
+        if name in assembly.linkage.angles:  # a run counts turns that the start knows nothing of
+            each[0] -= whole_turns(assembly.linkage, name, each[0, 0] - assembly.start[name],
+                                   assembly.range_of(name))
+    motions = sweep(assembly, {name: each[0] for name, each in inputs.items()},
                     {name: each[1] for name, each in inputs.items()})
     return _film(settings, f'{settings.name}: {course.title}', motions, course.timing, course.x,
                  course.across, course.captions, course.ticks)
@@ -95,7 +101,7 @@ def _driven(settings: LinkageSettings, course: Course) -> dict[str, Array]:
     told = course.linkages.get(settings.name, {})
     if not set(settings.linkage.inputs) <= set(told):
         raise ConfigurationError(missing)
-    return {name: told[name] for name in settings.linkage.inputs}
+    return {name: told[name].copy() for name in settings.linkage.inputs}
 
 
 def _film(settings: LinkageSettings, title: str, motions: Sequence[LinkageMotion], timing: Pace,

@@ -236,13 +236,17 @@ def _within(cam: CamToExport, target: TableFormat, options: ExportOptions,
     while low < high:
         middle = (low + high) // 2
         low, high = (low, middle) if holds(allowed[middle]) else (middle + 1, high)
-    # between the places looked at it may be a little farther off
-    for count in allowed[high:]:
+    # between the places looked at it may be a little farther off; where rounding alone decides,
+    # more points need not help, so that the steps grow
+    step = 1
+    while True:
+        count = allowed[high]
         done = _finished(cam, target, options, count)
         if abs(done.deviations[0].value) <= tolerance:
             return done
-        if not held:
+        if high == last:
             break
+        high, step = min(high + step, last), 2 * step
     raise ConfigurationError([Problem(
         '--tolerance', tolerance, f'{target.title} cannot hold it: with {count} points it '
         f'deviates by {abs(done.deviations[0].value):.3g}',

@@ -13,7 +13,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 
-from cam_motion.io.tables.outliers import Break, breaks_in, second_differences
+from cam_motion.io.tables.outliers import (
+    Break,
+    breaks_in,
+    resolution_of,
+    second_differences,
+)
 from cam_motion.io.tables.table import CamTable, LINEAR, QUINTIC, RETURN
 from cam_motion.motion.piece import Array
 from cam_motion.motion.spline import interpolate, NATURAL, PERIODIC, smooth
@@ -25,7 +30,6 @@ ERROR, WARNING, NOTE = 'error', 'warning', 'note'
 _STAIRS = 4  # so many velocity steps on straight lines are a staircase
 _COARSE = 0.01  # error between every second point, as a share of the stroke, that is too much
 _NOISE = 0.05  # share of the peak acceleration that rounding may add
-_MOST_DECIMALS = 9
 _DIFFERS = 0.02  # share of its peak by which a column may differ from the positions
 _MOST_FINDINGS = 8
 
@@ -147,7 +151,14 @@ def _unusable(context: _Context) -> list[Finding]:
 def _order(context: _Context) -> Iterator[Finding]:
     """Angles that stand still or fall."""
     table = context.table
-    for place in np.flatnonzero(np.diff(table.angle) <= 0.0)[:_MOST_FINDINGS] + 1:
+    steps = np.diff(table.angle)
+    if (steps < 0.0).all():
+        yield context.found(
+            'falling_angle', ERROR, 1, float(steps[0]) / DEGREE,
+            'the angles fall from line to line', 'a cam is read by rising angle',
+            'turn the order of the lines round')
+        return
+    for place in np.flatnonzero(steps <= 0.0)[:_MOST_FINDINGS] + 1:
         before, after = ((table.start + table.angle[n]) / DEGREE for n in (place - 1, place))
         same = before == after
         moved = table.position[place] - table.position[place - 1]
@@ -156,7 +167,8 @@ def _order(context: _Context) -> Iterator[Finding]:
             f'the angle {after:.6g} deg stands twice, with positions that differ by {moved:.5g} '
             f'{context.unit}' if same else
             f'the angle falls from {before:.6g} to {after:.6g} deg',
-            'there is no curve through it: the velocity would be infinite',
+            'there is no curve through it: the velocity would be infinite' if same else
+            'a cam is read by rising angle',
             'remove one of the two lines' if same else 'put the lines in order')
 
 
@@ -165,11 +177,13 @@ def _open(context: _Context) -> Iterator[Finding]:
     last = len(table.angle) - 1
     if not table.covers_cycle:
         covered = table.angle[-1] / DEGREE
+        counted = table.angle[-1] * table.per_radian
+        radians = math.isclose(covered, TURN, rel_tol=1e-3)
         yield context.found(
             'open_cycle', ERROR, last, 360.0 - covered,
             f'the table covers {covered:.6g} of 360 deg', 'the cycle has no end',
-            'add the missing points; or state --cycle-length '
-            f'{table.angle[-1] * table.per_radian:.6g} if that is one cycle')
+            'these are radians: state --angle-unit rad' if radians else
+            f'add the missing points; or state --cycle-length {counted:.6g} if that is one cycle')
 
 
 def _ends(context: _Context) -> Iterator[Finding]:
@@ -331,28 +345,6 @@ def _coarse(context: _Context) -> Iterator[Finding]:
             f'between the points the curve may be off by about {expected:.2g} {context.unit}, '
             f'its acceleration by {context.rate(16.0 * expected / step**2, 2)}',
             'export the table with at least twice as many points')
-
-
-def resolution_of(values: Array) -> float | None:
-    """
-    Find the power of ten to which numbers were rounded.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        The numbers.
-
-    Returns
-    -------
-    float | None
-        1, 0.1, 0.01 ...; None where they have all their digits.
-
-    """
-    for decimals in range(_MOST_DECIMALS + 1):
-        scaled = values * 10.0**decimals
-        if np.abs(scaled - np.round(scaled)).max() < 1e-6:
-            return float(10.0**-decimals)
-    return None
 
 
 def _rounded(context: _Context) -> Iterator[Finding]:

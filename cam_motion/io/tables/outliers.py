@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 _STANDS_OUT = 6.0  # a second difference so many times those around it is none of a smooth curve
 _SIDE = 0.3  # share of a spike that its neighbours have where one point is wrong
 _ROUNDING = 1e-12
+_MOST_DECIMALS = 9
 
 
 class Differences(NamedTuple):
@@ -81,18 +82,31 @@ def second_differences(table: CamTable) -> Differences:
     steps = 0.5 * (h[1:] + h[:-1])
     slopes = np.diff(y) / h
     resolution = _ROUNDING * max(float(np.abs(y).max()), table.stroke)
-    decimals = _decimals(table.position)
+    decimals = 0.5 * (resolution_of(table.position) or 0.0)
     noise = 3.0 * max(resolution, decimals) / steps**2
     return Differences(places, x[1:-1], np.diff(slopes) / steps, steps, noise)
 
 
-def _decimals(values: Array) -> float:
-    """Give half a unit of the last digit to which positions were rounded; 0 if they were not."""
-    for decimals in range(10):
+def resolution_of(values: Array) -> float | None:
+    """
+    Find the power of ten to which numbers were rounded.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        The numbers.
+
+    Returns
+    -------
+    float | None
+        1, 0.1, 0.01 ...; None where they have all their digits.
+
+    """
+    for decimals in range(_MOST_DECIMALS + 1):
         scaled = values * 10.0**decimals
         if np.abs(scaled - np.round(scaled)).max() < 1e-6:
-            return 0.5 * float(10.0**-decimals)
-    return 0.0
+            return float(10.0**-decimals)
+    return None
 
 
 def breaks_in(table: CamTable) -> list[Break]:

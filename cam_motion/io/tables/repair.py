@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 import math
 from typing import Any
@@ -18,6 +18,7 @@ from cam_motion.errors import ConfigurationError, DomainError, Problem
 from cam_motion.io.axis import build_axis, CoupledAxis
 from cam_motion.io.tables.lint import errors_in
 from cam_motion.io.tables.table import CamTable, CUBIC, QUINTIC, RETURN
+from cam_motion.motion.continuity import curve_joints
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import Peak, Piecewise
 from cam_motion.motion.spline import smooth
@@ -29,8 +30,6 @@ SEGMENT = 'curve'
 
 _DIGITS = 12
 # What rounding may leave of a step, as a share of the derivative's own peak.
-_STEP_TOLERANCES = (1e-9, 1e-9, 1e-9, 1e-5, 1e-2)
-_WIDTH = 96
 
 
 @dataclass(frozen=True)
@@ -108,23 +107,14 @@ def figures_of(curve: Piecewise, advance: float) -> CurveFigures:
         The figures.
 
     """
-    steps: list[Peak | None] = []
-    for order, tolerance in enumerate(_STEP_TOLERANCES):
-        derivative = curve.differentiated(order)
-        slack = tolerance * max(abs(curve.peak(order).value), 1e-300)
-        jumps = [Peak(right.at(0.0) - left.at(left.length), at) for at, left, right in zip(
-            curve.breaks[1:], derivative.pieces, derivative.pieces[1:])]
-        first, last = curve.end_values(order)
-        jumps.append(Peak(first - last + (advance if order == 0 else 0.0), 0.0))
-        worst = max(jumps, key=lambda jump: abs(jump.value))
-        steps.append(worst if abs(worst.value) > slack else None)
-    continuity = next((n - 1 for n, step in enumerate(steps) if step), len(steps) - 1)
+    worst = min(curve_joints(curve, advance),
+                key=lambda joint: (joint.continuity, -abs(joint.step)))
     peaks = []
     for order in (1, 2, 3):
-        below = next((step for step in steps[:order] if step), None)
-        peaks.append(curve.peak(order) if below is None else
-                     Peak(math.copysign(math.inf, below.value), below.at))
-    return CurveFigures(tuple(peaks), continuity)
+        steps = worst.order is not None and worst.order < order
+        peaks.append(Peak(math.copysign(math.inf, worst.step), worst.at) if steps else
+                     curve.peak(order))
+    return CurveFigures(tuple(peaks), worst.continuity)
 
 
 def import_table(table: CamTable, name: str, unit: str = 'm', tolerance: float | None = None,
@@ -235,46 +225,3 @@ def _flat(section: Mapping[str, Any], above: str = '') -> Iterable[tuple[str, An
             yield from _flat(value, f'{above}{key}.')
         else:
             yield f'{above}{key}', value
-
-
-def as_yaml(name: str, section: Mapping[str, Any], remarks: Sequence[str] = ()) -> str:
-    """
-    Write the section of an axis for a machine file.
-
-    Parameters
-    ----------
-    name : str
-        Name of the axis.
-    section : Mapping[str, Any]
-        Its parameters.
-    remarks : Sequence[str]
-        Comments that go before it.
-
-    Returns
-    -------
-    str
-        YAML.
-
-    """
-    lines = [f'# {remark}' for remark in remarks] + [f'{name}:', '  ros__parameters:']
-    return '\n'.join([*lines, *_yaml_lines(section, '    ')]) + '\n'
-
-
-def _yaml_lines(section: Mapping[str, Any], indent: str) -> Iterable[str]:
-    for key, value in section.items():
-        if isinstance(value, Mapping):
-            yield f'{indent}{key}:'
-            yield from _yaml_lines(value, indent + '  ')
-        elif isinstance(value, list) and len(value) > 1:
-            line = f'{indent}{key}: ['
-            for place, each in enumerate(value):
-                cell = f'{each!r}' + (', ' if place < len(value) - 1 else ']')
-                if len(line) + len(cell.rstrip()) > _WIDTH:
-                    yield line.rstrip()
-                    line = indent + '  '
-                line += cell
-            yield line
-        elif isinstance(value, list):
-            yield f'{indent}{key}: [{", ".join(map(str, value))}]'
-        else:
-            yield f'{indent}{key}: {value}'

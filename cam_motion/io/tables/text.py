@@ -24,6 +24,7 @@ COMMENT = re.compile(r'(#|//|%|\(\*).*$')
 """A comment, up to the end of its line."""
 
 _NUMBER = r'[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][-+]?\d+)?'
+_ONE_NUMBER = re.compile(rf'^{_NUMBER}$', re.ASCII)
 _SPACED_COMMAS = re.compile(rf'^\s*{_NUMBER}(?:\s+{_NUMBER})+\s*$')
 _NOT_FINITE = re.compile(r'^[-+]?(nan|inf|infinity|1\.?#\w*)$', re.IGNORECASE)
 
@@ -46,10 +47,9 @@ def number_in(text: str) -> float | None:
     text = text.strip().strip('"\'')
     if _NOT_FINITE.match(text):
         return math.nan
-    try:
-        return float(re.sub('[dD]', 'e', text.replace(',', '.')))
-    except ValueError:
+    if not _ONE_NUMBER.match(text):
         return None
+    return float(re.sub('[dD]', 'e', text.replace(',', '.')))
 
 
 def delimiter_of(lines: list[str]) -> str:
@@ -168,8 +168,9 @@ def read_rows(text: str, source: str, delimiter: str = '', first: int = 1, least
         more = [Problem(source, rest, 'more lines are wrong')] if rest > 0 else []
         raise ConfigurationError(problems[:MOST_PROBLEMS] + more)
     if len(rows) < 2:
+        hint = f'{"; ".join(heading)!r} is no row: a row holds numbers only' if heading else ''
         raise ConfigurationError([Problem(
-            source, f'{len(rows)} rows of numbers', 'a table needs at least two points')])
+            source, f'rows of numbers: {len(rows)}', 'a table needs at least two points', hint)])
     return np.array(rows), tuple(numbers), heading
 
 
