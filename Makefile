@@ -90,7 +90,7 @@ $(STAMP): requirements.txt requirements-dev.txt setup.py setup.cfg pyproject.tom
 	@mkdir -p $(dir $(LOG))
 	@( set -x; export VIRTUAL_ENV="$(CURDIR)/$(VENV)"; \
 	  pip="$(BIN)/python -m pip --disable-pip-version-check"; \
-	  install() { $(BIN)/uv pip install "$$@" || $$pip install "$$@"; }; \
+	  install() { $(BIN)/uv pip install --compile-bytecode "$$@" || $$pip install "$$@"; }; \
 	  { test -x $(BIN)/python || $(BASE) -m venv $(VENV); } && \
 	  touch $(VENV)/COLCON_IGNORE && \
 	  { $$pip install uv || echo 'no uv: pip does it alone'; } && \
@@ -99,6 +99,7 @@ $(STAMP): requirements.txt requirements-dev.txt setup.py setup.cfg pyproject.tom
 	  for link in $(LINKS); do \
 	    to="$(VENV)/$${link%=*}" && rm -rf "$$to" && mkdir -p "$${to%/*}" && \
 	    ln -s "$(CURDIR)/$${link#*=}" "$$to" || exit; \
-	  done ) >$(LOG) 2>&1 \
+	  done && \
+	  $(BIN)/python -m compileall -q cam_motion ) >$(LOG) 2>&1 \
 	  || { tail -n 25 $(LOG); echo 'Setting up $(VENV)/ failed; see $(LOG).'; exit 1; }
 	@touch $@

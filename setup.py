@@ -55,7 +55,7 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            f'{package_name} = {package_name}.cli:main',
+            f'{package_name} = {package_name}.start:command_line',
             *(f'{node} = {package_name}.start:{node}' for node in nodes),
         ],
     },

@@ -7,9 +7,7 @@
 # language governing permissions and limitations under the License.
 """Run the command line as ``python -m cam_motion``."""
 
-import sys
-
-from cam_motion.cli import main
+from cam_motion.start import command_line
 
 if __name__ == '__main__':
-    sys.exit(main())
+    command_line()

@@ -5,24 +5,59 @@
 # writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
-"""Starting a node as a process: asked to stop, it goes quietly from its first moment on."""
+"""
+The door through which every process enters and leaves.
+
+Asked to stop, a process goes quietly from its first moment on, and once its work is done nothing
+can spoil its exit code any more.
+"""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import partial
 from importlib import import_module
 import os
 import signal
 import sys
+from typing import NoReturn
+
+_STAY = ('line', 'record')
+"""Verbs of the command line that go on until they are asked to stop."""
 
 
-def _leave(*_: object) -> None:
+def _leave_quietly(*_: object) -> None:
     # Nothing has begun that would have to be ended. An exception might end up in whatever is
     # being imported, which could take it for a fault of its own.
     os._exit(0)
 
 
-def start(node: str) -> int:
+def obey_signals() -> None:
+    """End the process with exit code 0 on SIGINT and SIGTERM, until it has something to end."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _leave_quietly)
+
+
+def leave(code: int) -> NoReturn:
+    """
+    End the process, now that its work is done.
+
+    Interpreter and libraries are not torn down piece by piece: threads of DDS may outlive the last
+    node by a moment, and would meet what is being destroyed.
+
+    Parameters
+    ----------
+    code : int
+        Exit code.
+
+    """
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):  # nobody reads it any more, or it is closed
+            stream.flush()
+    os._exit(code)
+
+
+def start(node: str) -> NoReturn:
     """
     Import a node and run it; the imports take most of a second.
 
@@ -31,16 +66,17 @@ def start(node: str) -> int:
     node : str
         Name of the executable.
 
-    Returns
-    -------
-    int
-        Exit code.
-
     """
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _leave)
-    code: int = import_module(f'cam_motion.nodes.{node}').main()
-    return code
+    obey_signals()
+    leave(import_module(f'cam_motion.nodes.{node}').main())
+
+
+def command_line() -> NoReturn:
+    """Carry out the command line of the process."""
+    if sys.argv[1:2] and sys.argv[1] in _STAY:
+        obey_signals()
+    from cam_motion.cli import main
+    leave(main())
 
 
 bag_recorder = partial(start, 'bag_recorder')
@@ -52,4 +88,4 @@ master_shaft = partial(start, 'master_shaft')
 
 
 if __name__ == '__main__':
-    sys.exit(start(sys.argv.pop(1)))
+    start(sys.argv.pop(1))

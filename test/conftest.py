@@ -6,13 +6,18 @@
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
 """
-What all tests share: how many random examples are tried, and from which seed.
+What all tests share: ROS domains, how many random examples are tried, and from which seed.
 
 With ``CI=true`` the examples are always the same ones. ``CAM_MOTION_EXAMPLES=2000`` tries that
 many of each family instead, and gives each test so much more time.
 """
 
+from contextlib import contextmanager
+import fcntl
+import itertools
 import os
+from pathlib import Path
+import tempfile
 
 from hypothesis import HealthCheck, settings
 import pytest
@@ -35,3 +40,36 @@ def pytest_collection_modifyitems(items):
         marker = item.get_closest_marker('timeout')
         if more > 1.0 and marker and marker.args:
             item.add_marker(pytest.mark.timeout(more * marker.args[0]), append=False)
+
+
+DOMAINS = (*range(1, 101), *range(215, 231))  # whose ports no system hands out on its own
+_counter = itertools.count()
+
+
+@contextmanager
+def _reserved_domain():
+    first = os.getpid() * 7 + next(_counter)
+    for offset in range(len(DOMAINS)):
+        number = DOMAINS[(first + offset) % len(DOMAINS)]
+        path = Path(tempfile.gettempdir()) / f'cam_motion_domain_{os.getuid()}_{number}'
+        with open(path, 'w') as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                continue
+            yield number
+            return
+    pytest.fail('no ROS domain is free')
+
+
+@pytest.fixture(scope='session')
+def reserved_domain():
+    """Give a context that reserves a ROS domain no other test uses meanwhile, in any process."""
+    return _reserved_domain
+
+
+@pytest.fixture
+def domain(reserved_domain):
+    """Reserve a ROS domain for one test."""
+    with reserved_domain() as number:
+        yield number

@@ -43,12 +43,12 @@ def is_live(example):
     return 'import rclpy' in example.read_text(encoding='utf-8')
 
 
-def output_of(example, folder):
+def output_of(example, folder, domain):
     """Run an example from another folder and return what it prints."""
     path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get('PYTHONPATH')]))
     environment = os.environ | {
         'PYTHONPATH': path, 'PYTHONIOENCODING': 'utf-8', 'MPLBACKEND': 'Agg',
-        'ROS_DOMAIN_ID': str(10 + os.getpid() % 90), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
     }
     if not is_live(example):
         environment['PYTHONWARNINGS'] = 'error'
@@ -76,10 +76,11 @@ def test_the_course_is_numbered_without_a_gap():
 @pytest.mark.parametrize('example', [
     pytest.param(path, marks=[pytest.mark.ros] if is_live(path) else []) for path in EXAMPLES
 ], ids=lambda path: path.stem)
-def test_an_example_prints_what_the_readme_shows_and_the_sources_say(example, tmp_path):
+def test_an_example_prints_what_the_readme_shows_and_the_sources_say(
+        example, domain, tmp_path):
     if is_live(example):
         pytest.importorskip('rclpy')
-    printed = output_of(example, tmp_path)
+    printed = output_of(example, tmp_path, domain)
     assert printed.strip()
     place = -1
     for line in FIGURES.get(example.name, []):

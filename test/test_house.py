@@ -23,7 +23,7 @@ PACKAGE = ROOT / 'cam_motion'
 # io, nodes, cli -> runtime, drive, mechanism -> motion -> units, errors
 RANKS = {
     'errors': 0, 'units': 0, 'motion': 1, 'runtime': 2, 'drive': 2, 'mechanism': 2,
-    'io': 3, 'nodes': 4, 'cli': 5, 'start': 6, '__main__': 6,
+    'io': 3, 'nodes': 4, 'cli': 5, 'start': 6, '__main__': 7,
 }
 SIDEWAYS = {'runtime', 'drive', 'mechanism'}  # may import each other
 PUBLIC_FACE = {'errors', 'units', 'motion'}  # what cam_motion/__init__.py may offer

@@ -14,7 +14,7 @@ from cam_motion.cli import main
 from cam_motion.io.reference import BLOCKS, refreshed, TABLES
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')

@@ -13,7 +13,6 @@ import argparse
 from collections.abc import Mapping
 from pathlib import Path
 import re
-from typing import Any
 
 from cam_motion.cli.options import add_json, add_speed, finite_number
 from cam_motion.cli.terminal import (
@@ -53,24 +52,23 @@ _WIDE = 170  # columns needed for figures and reasons side by side
 _ENDS = {end.value.replace(' ', '_'): end for end in Boundary}
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'advise', help='which motion law a movement should have, and which filter',
-        description='Rank the motion laws for movements of a machine file, or for one given by '
-                    '--lift, --span-deg and --speed-cpm: peaks, RMS, torque and energy of the '
-                    'drive that follows the axis over its whole cycle, and the vibration left '
-                    'where something swings, with a reason for each law. What swings is told by '
-                    '--frequency-hz, by a container with liquid, or by shaping in the file; then '
-                    'filters are compared too.')
+    parser.description = (
+        'Rank the motion laws for movements of a machine file, or for one given by '
+        '--lift, --span-deg and --speed-cpm: peaks, RMS, torque and energy of the '
+        'drive that follows the axis over its whole cycle, and the vibration left '
+        'where something swings, with a reason for each law. What swings is told by '
+        '--frequency-hz, by a container with liquid, or by shaping in the file; then '
+        'filters are compared too.')
     parser.add_argument('config', metavar='CONFIG', nargs='?',
                         help='machine file; without one, describe the movement')
     parser.add_argument('movements', metavar='AXIS[.SEGMENT]', nargs='*',

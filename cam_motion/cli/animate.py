@@ -13,7 +13,6 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 import re
-from typing import Any
 
 from cam_motion.cli.options import add_json, add_speed, finite_number, seconds
 from cam_motion.cli.terminal import print_files, print_json, progress
@@ -25,25 +24,25 @@ _LEAST_DPI, _MOST_DPI = 40.0, 400.0
 _MOST_FPS = 120.0
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'animate', help='film a mechanism or the axes of a machine',
-        description='Film a linkage with the velocities of its points, a disc cam that turns '
-                    'under its follower, or the dial and the axes of a machine, with the curves '
-                    'beside it: a motion or one cycle of a machine file, or a recorded run.',
-        epilog='Without --linkage, --disc, --axis and --diagram: the first linkage, else the '
-               'first disc cam, else all axes. Without --seconds and --speed: in real time if '
-               'that takes 5 to 15 s and leaves a second for each cycle, else as near to it as '
-               'can be. A GIF has at most 50 frames per second; an MP4 needs ffmpeg.')
+    parser.description = (
+        'Film a linkage with the velocities of its points, a disc cam that turns '
+        'under its follower, or the dial and the axes of a machine, with the curves '
+        'beside it: a motion or one cycle of a machine file, or a recorded run.')
+    parser.epilog = (
+        'Without --linkage, --disc, --axis and --diagram: the first linkage, else the '
+        'first disc cam, else all axes. Without --seconds and --speed: in real time if '
+        'that takes 5 to 15 s and leaves a second for each cycle, else as near to it as '
+        'can be. A GIF has at most 50 frames per second; an MP4 needs ffmpeg.')
     parser.add_argument('source', metavar='CONFIG|BAG',
                         help='machine file, or bag: a directory, .mcap or .db3 file')
     parser.add_argument('-o', '--output', metavar='FILE', type=Path, required=True,

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
-from typing import Any
 
 from cam_motion.cli.options import add_config, add_json, add_speed
 from cam_motion.cli.terminal import console, number, print_json, print_problems, row, speed, table
@@ -28,23 +27,23 @@ from cam_motion.units import DEGREE, rate_text, RPM
 _DERIVATIVES = (*QUANTITIES, 'snap', '5th derivative', '6th derivative')
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'check', help='check a machine file; peaks, and the highest speed',
-        description='Check a machine file: every problem at once, the peaks of each segment at '
-                    'the set speed, the continuity class of each joint, and the highest speed '
-                    'within the limits of every axis. Exit code 2 if there is any problem.',
-        epilog='Class Ck: all derivatives up to order k run through. C0: the velocity steps, '
-               'which no cam may; C1: the acceleration does; C2: the jerk.')
+    parser.description = (
+        'Check a machine file: every problem at once, the peaks of each segment at '
+        'the set speed, the continuity class of each joint, and the highest speed '
+        'within the limits of every axis. Exit code 2 if there is any problem.')
+    parser.epilog = (
+        'Class Ck: all derivatives up to order k run through. C0: the velocity steps, '
+        'which no cam may; C1: the acceleration does; C2: the jerk.')
     add_config(parser)
     add_speed(parser)
     add_json(parser)

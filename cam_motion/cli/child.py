@@ -124,6 +124,11 @@ class Child:
             self._process.wait()
             print(f'cam_motion: {self.name} did not stop within {within:g} s and was killed',
                   file=sys.stderr)
+        died_of = -(self._process.returncode or 0)
+        if died_of > 0 and not self.killed:
+            print(f'cam_motion: {self.name} was ended by signal {died_of} '
+                  f'({signal.strsignal(died_of)})',
+                  file=sys.stderr)
         if self._reader is not None:
             self._reader.join(1.0)
             if not self._reader.is_alive():  # a grandchild could hold the pipe open

@@ -46,22 +46,21 @@ from cam_motion.units import DEGREE, MM, RPM
 _DRAWN = ('csv', 'dxf', 'png')  # what goes into a directory
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'contour', help='contour, pressure angle, curvature and contact force of disc cams',
-        description='Figures of the disc cams of a machine file (type: cam_disc, and the cam of '
-                    'a drive that turns the shaft), and their contours as CSV, DXF and pictures. '
-                    'Exit code 2 where a contour is undercut, breaks a limit or lets its '
-                    'follower lift off; its figures are printed all the same.')
+    parser.description = (
+        'Figures of the disc cams of a machine file (type: cam_disc, and the cam of '
+        'a drive that turns the shaft), and their contours as CSV, DXF and pictures. '
+        'Exit code 2 where a contour is undercut, breaks a limit or lets its '
+        'follower lift off; its figures are printed all the same.')
     add_config(parser)
     parser.add_argument('name', metavar='NAME', nargs='?', help='one disc (default: all)')
     parser.add_argument('-o', '--output', metavar='PATH', type=Path,

@@ -33,18 +33,17 @@ _LETTERS = {Boundary.REST: 'R', Boundary.CONSTANT_VELOCITY: 'V', Boundary.TURN: 
 _WIDE = 150  # columns needed for coefficients and prose side by side, a law mostly on one line
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    text = 'list the motion laws with their coefficients'
-    parser = verbs.add_parser('laws', help=text, description=text.capitalize() + '.')
+    parser.description = 'List the motion laws with their coefficients.'
     parser.add_argument('-o', '--output', metavar='DIR', type=Path,
                         help='draw them on one sheet, laws.png in this directory')
     parser.add_argument('--format', choices=('png', 'svg', 'pdf'), default='png',

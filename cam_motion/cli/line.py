@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from cam_motion.cli.child import require_ros, stop_signals
 from cam_motion.cli.live import Display
@@ -24,20 +23,19 @@ from cam_motion.io.machine import build_machine
 from cam_motion.io.summary import with_speed
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'line', help='run the machine (needs ROS 2)',
-        description='Check the machine file, then run the whole machine, with a live display. '
-                    'Ctrl-C stops it cleanly.')
+    parser.description = (
+        'Check the machine file, then run the whole machine, with a live display. '
+        'Ctrl-C stops it cleanly.')
     add_config(parser)
     add_speed(parser)
     parser.add_argument('--seconds', type=seconds, metavar='S',

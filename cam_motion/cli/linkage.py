@@ -13,7 +13,6 @@ import argparse
 import math
 from pathlib import Path
 import re
-from typing import Any
 
 from cam_motion.cli.options import add_config, add_json, finite_number
 from cam_motion.cli.terminal import (
@@ -41,21 +40,20 @@ from cam_motion.units import DEGREE
 _ROUNDING = 1e-13
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'linkage', help='angles, velocities and points of a planar linkage',
-        description='Solve a planar linkage of vector loops on the branch of its start: angles, '
-                    'velocities, accelerations, points, and how far each input goes. Exit code 2 '
-                    'for inputs out of range.')
+    parser.description = (
+        'Solve a planar linkage of vector loops on the branch of its start: angles, '
+        'velocities, accelerations, points, and how far each input goes. Exit code 2 '
+        'for inputs out of range.')
     add_config(parser)
     parser.add_argument(
         '--at', type=_assignments, default={}, metavar='NAME=X,...',

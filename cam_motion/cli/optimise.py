@@ -49,25 +49,25 @@ _LONG = 16  # letters of a name in the heading of a column
 _RATES = QUANTITIES[1:]
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'optimise', help='find the best law for a movement',
-        description='Find the law that makes a peak, an RMS value or a torque of a movement '
-                    'least within limits: a spline by linear and quadratic programming, or the '
-                    'stage lengths of a family of laws by a global search. With a machine file '
-                    'the limits, the neighbours and the drive of the axis count; without one '
-                    'the movement is --lift over --span-deg between two dwells.',
-        epilog='GOAL: ' + ', '.join(OBJECTIVES) + '; several with weights as '
-               'rms_acceleration=1,peak_jerk=0.5, each in relation to the polynomial 3-4-5.')
+    parser.description = (
+        'Find the law that makes a peak, an RMS value or a torque of a movement '
+        'least within limits: a spline by linear and quadratic programming, or the '
+        'stage lengths of a family of laws by a global search. With a machine file '
+        'the limits, the neighbours and the drive of the axis count; without one '
+        'the movement is --lift over --span-deg between two dwells.')
+    parser.epilog = (
+        'GOAL: ' + ', '.join(OBJECTIVES) + '; several with weights as '
+        'rms_acceleration=1,peak_jerk=0.5, each in relation to the polynomial 3-4-5.')
     parser.add_argument('config', metavar='CONFIG', nargs='?',
                         help='machine file: a ROS 2 parameter file in YAML')
     parser.add_argument('segment', metavar='AXIS.SEGMENT', nargs='?',

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 import re
-from typing import Any, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from cam_motion.cli.options import add_config, add_json, finite_number
 from cam_motion.cli.terminal import print_files, print_json, progress, save_figure
@@ -29,20 +29,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'plot', help='draw timing diagram, cams and drives',
-        description='Draw the timing diagram, position to jerk of each axis, and torque over '
-                    'speed of each drive.')
+    parser.description = (
+        'Draw the timing diagram, position to jerk of each axis, and torque over '
+        'speed of each drive.')
     add_config(parser)
     parser.add_argument('-o', '--output', metavar='DIR', default='.', type=Path,
                         help='directory for the files (default: the current one)')

@@ -13,7 +13,6 @@ import argparse
 import math
 from pathlib import Path
 from time import monotonic
-from typing import Any
 
 from cam_motion.cli.child import recorder, require_ros, START_WITHIN, stop_signals
 from cam_motion.cli.options import add_config, add_json, check_new_bag, seconds
@@ -23,19 +22,18 @@ from cam_motion.io.config import load_machine
 _LOOK_AGAIN = 0.05
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'record', help='record a running machine (needs ROS 2)',
-        description='Record every topic of a running machine into a rosbag2 bag. Ctrl-C ends it.')
+    parser.description = (
+        'Record every topic of a running machine into a rosbag2 bag. Ctrl-C ends it.')
     add_config(parser)
     parser.add_argument('-o', '--output', metavar='DIR', type=Path, required=True,
                         help='directory of the bag, which must not exist')

@@ -13,7 +13,7 @@ import argparse
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from cam_motion.cli.options import add_json
 from cam_motion.cli.terminal import print_files, print_json, progress, save_figure
@@ -23,21 +23,20 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'report', help='compare a recorded run with the exact curves',
-        description='Compare every recorded setpoint with the exact curve at the recorded shaft '
-                    'angle. Exit code 0 if each shaft tick has its setpoint and each setpoint is '
-                    "within 1e-9 of its axis' own peak, else 1.")
+    parser.description = (
+        'Compare every recorded setpoint with the exact curve at the recorded shaft '
+        'angle. Exit code 0 if each shaft tick has its setpoint and each setpoint is '
+        "within 1e-9 of its axis' own peak, else 1.")
     parser.add_argument('bag', metavar='BAG', type=Path, help='bag directory, .mcap or .db3 file')
     parser.add_argument('--config', metavar='CONFIG', type=Path,
                         help='machine file (default: the one that the bag carries)')

@@ -68,21 +68,20 @@ _PARTS = {'exact': 'exact motion', 'orbit': 'periodic motion', 'start_up': 'star
           'document': "document's definitions", 'servo': 'servo drive'}
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'simulate', help='simulate the drives of a machine',
-        description='Torque, speed and energy of every drive that follows an axis, at the set '
-                    'speed; periodic motion and start-up of every drive that turns a cam shaft, '
-                    'and the metrics of document 004 by its own definitions.')
+    parser.description = (
+        'Torque, speed and energy of every drive that follows an axis, at the set '
+        'speed; periodic motion and start-up of every drive that turns a cam shaft, '
+        'and the metrics of document 004 by its own definitions.')
     add_config(parser)
     parser.add_argument('-o', '--output', metavar='DIR', type=Path,
                         help='draw pictures of the drives into this directory')

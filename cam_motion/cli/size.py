@@ -34,25 +34,25 @@ _MOST_STEPS = 10000
 _TOP = 10
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
     wishes = Wishes()
-    parser = verbs.add_parser(
-        'size', help='choose motor, gear ratio and flywheel from a catalogue',
-        description='Try every motor, gear ratio and flywheel of a catalogue: servo motors by '
-                    'inverse dynamics for drives that follow an axis, induction motors by their '
-                    'periodic motion for drives that turn a cam shaft. Ranks what keeps every '
-                    'rule, and says for the rest which rules they break and by how much.',
-        epilog='LIST: 3,3.5,4 or 3:4:11 (from, to, how many). Exit code 1 when a drive has no '
-               'candidate that keeps every rule.')
+    parser.description = (
+        'Try every motor, gear ratio and flywheel of a catalogue: servo motors by '
+        'inverse dynamics for drives that follow an axis, induction motors by their '
+        'periodic motion for drives that turn a cam shaft. Ranks what keeps every '
+        'rule, and says for the rest which rules they break and by how much.')
+    parser.epilog = (
+        'LIST: 3,3.5,4 or 3:4:11 (from, to, how many). Exit code 1 when a drive has no '
+        'candidate that keeps every rule.')
     add_config(parser)
     parser.add_argument('--drive', metavar='NAME', action='append', default=[],
                         help='size this drive only; may be repeated')

@@ -52,22 +52,21 @@ DEFAULT_CPM = 60.0
 """Speed at which the harm of a finding is told [cycles/min]."""
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'table', help='judge, take over and write cam tables of other systems',
-        description='Cam tables of other systems: say what is wrong with one, make an axis of '
-                    'it, repaired within a stated deviation, or write a cam as one and say how '
-                    'far the target will be off. Formats: ' + '; '.join(
-                        f'{name}: {each.title}' for name, each in FORMATS.items()) + '.')
+    parser.description = (
+        'Cam tables of other systems: say what is wrong with one, make an axis of '
+        'it, repaired within a stated deviation, or write a cam as one and say how '
+        'far the target will be off. Formats: ' + '; '.join(
+            f'{name}: {each.title}' for name, each in FORMATS.items()) + '.')
     actions = parser.add_subparsers(dest='action', metavar='ACTION', required=True)
     judge = actions.add_parser(
         'lint', help='say what is wrong with a table, where and how badly',

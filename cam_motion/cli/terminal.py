@@ -44,6 +44,9 @@ class _Output(Console):
         finally:
             self.width = before
 
+    def on_broken_pipe(self) -> None:
+        raise  # noqa: PLE0704 (rich calls this in its handler, and would end with exit code 1)
+
 
 def _least_width(thing: object) -> int:
     """Find the width that a table needs for its figures; prose is folded to a few words."""

@@ -17,7 +17,6 @@ from cam_motion.drive.shaft_field import Acceleration, compile_field, Torque
 from cam_motion.drive.shaft_torque import Command, ShaftTorque
 from cam_motion.errors import CamMotionError
 from cam_motion.units import TURN
-from scipy.optimize import brentq
 
 _AT_ONCE = 1e-9  # what happens within this share of a substep happens at its beginning
 _NEWTON_STEPS = 6
@@ -99,6 +98,8 @@ class LiveShaft:
     def __init__(self, drive: CamDrive, substep_ns: int, brake_torque: float, phi: float = 0.0,
                  ) -> None:
         """Stand, held by the brake."""
+        from scipy.optimize import brentq  # now, not in the middle of a tick
+        self._find_root = brentq
         self.command = Command.BRAKE
         self._elements = compile_field(drive)
         self._torque = ShaftTorque(drive, brake_torque)
@@ -257,7 +258,7 @@ class LiveShaft:
                     return time
         if margin(soon) > 0.0:
             return 0.0
-        return float(brentq(margin, soon, left, xtol=_PLACED))
+        return float(self._find_root(margin, soon, left, xtol=_PLACED))
 
     def _after(self, at: _Moment, event: int) -> _Moment:
         """Go on from an event: the end of an element, rest, or the synchronous speed."""

@@ -24,7 +24,6 @@ from cam_motion.drive.load import Friction
 from cam_motion.motion.piece import Array
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
-from scipy.optimize import brentq
 
 TOLERANCE = 1e-13
 """Largest error of a polynomial, as a share of the term's largest value in a revolution."""
@@ -89,6 +88,7 @@ def compile_field(drive: CamDrive) -> tuple[FieldElement, ...]:
 
 def _turning_points(drive: CamDrive) -> list[float]:
     """Find the angles at which the follower turns back within an element."""
+    from scipy.optimize import brentq
     found = []
     for element in drive.elements:
         def slope(q: float, element: Element = element) -> float:

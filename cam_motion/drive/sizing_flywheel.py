@@ -16,7 +16,6 @@ from typing import NamedTuple
 from cam_motion.drive.cam_drive import CamDrive
 from cam_motion.drive.orbit import find_orbit, NoOrbitError
 import numpy as np
-from scipy.optimize import brentq
 
 _FIRST = 0.05  # of the motor's inertia: the first flywheel tried after none at all
 _STEP = math.sqrt(2.0)  # from one flywheel tried to the next
@@ -100,6 +99,7 @@ def smallest_flywheel(drive: CamDrive, wanted_pct: float) -> SmallestFlywheel:
     if excess > wanted_pct:
         return SmallestFlywheel(wanted_pct, None, None, largest, _known(without), _known(excess))
     if flywheel > 0.0:
+        from scipy.optimize import brentq
         # no periodic motion counts as twice what is wanted, so that the root stays bracketed
         flywheel = brentq(
             lambda inertia: min(fluctuation(drive, inertia), 2.0 * wanted_pct) - wanted_pct,

@@ -16,7 +16,6 @@ from cam_motion.drive.start_up import StallError
 from cam_motion.motion.piece import Array
 from cam_motion.units import TURN
 import numpy as np
-from scipy.integrate import solve_ivp
 
 
 class TimeHistory(NamedTuple):
@@ -60,6 +59,7 @@ def step_in_time(drive: CamDrive, duration: float, omega: float = 0.0, rtol: flo
     is left to the control of the step size.
 
     """
+    from scipy.integrate import solve_ivp
     t, q = 0.0, 0.0
     steps = [(np.array([t]), np.array([q]), np.array([omega]))]
     index, turn = 0, 0.0

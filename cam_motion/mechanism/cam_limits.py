@@ -21,7 +21,6 @@ from cam_motion.mechanism.cam_extremes import split_turn
 from cam_motion.mechanism.cam_follower import Contact, reach_of
 from cam_motion.units import DEGREE
 import numpy as np
-from scipy.optimize import brentq
 
 _COARSE = 41  # points per stretch of the search, before what it finds is refined
 _NUDGE = 1e-14  # share of a radius by which rounding is left behind
@@ -346,6 +345,7 @@ def _boundary(disc: CamDisc, limits: CamLimits, bad: float, good: float) -> floa
             bad, at_bad = middle, found
     if at_bad == -math.inf:
         return good
+    from scipy.optimize import brentq
     radius = float(brentq(left, bad, good, xtol=1e-300, rtol=9e-16))
     while left(radius) <= 0.0:
         radius *= 1.0 + _NUDGE

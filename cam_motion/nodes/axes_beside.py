@@ -22,6 +22,7 @@ from cam_motion.runtime.ramp_room import RampRoom
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import qos_profile_parameter_events
+import scipy.interpolate  # noqa: F401 (for laws of changed axes: not beside a running tick)
 
 _LIMITS = 'limits.'
 _QUIET = 0.05  # changes that follow each other more closely are reckoned with together [s]

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
-import sys
 import time
 from typing import Any
 
@@ -280,7 +279,3 @@ def main(argv: list[str] | None = None) -> int:
 
     """
     return run(lambda: [BagRecorder()], argv)
-
-
-if __name__ == '__main__':
-    sys.exit(main())

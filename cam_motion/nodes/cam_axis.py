@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 import math
-import sys
 from typing import Any
 
 from cam_motion.errors import ConfigurationError
@@ -37,6 +36,7 @@ from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.units import RPM
 from rclpy.publisher import Publisher
+import scipy.interpolate  # noqa: F401 (for laws of later formats: not in the middle of a tick)
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectoryPoint
@@ -362,7 +362,3 @@ def main(argv: list[str] | None = None) -> int:
 
     """
     return run(lambda: [CamAxis()], argv)
-
-
-if __name__ == '__main__':
-    sys.exit(main())

@@ -10,7 +10,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-import sys
 from typing import Any
 
 from cam_motion.io.line_parts import LINE_SHAFT
@@ -180,7 +179,3 @@ def main(argv: list[str] | None = None) -> int:
 
     """
     return run(lambda: [DriveSim()], argv)
-
-
-if __name__ == '__main__':
-    sys.exit(main())

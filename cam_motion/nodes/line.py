@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-import sys
 from typing import Any
 
 from cam_motion.errors import ConfigurationError
@@ -171,7 +170,3 @@ def main(argv: list[str] | None = None) -> int:
 
     """
     return run(make_line, argv)
-
-
-if __name__ == '__main__':
-    sys.exit(main())

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-import sys
 from typing import Any
 
 from cam_motion.io.linkage_line import build_driven, linkage_table
@@ -258,7 +257,3 @@ def main(argv: list[str] | None = None) -> int:
 
     """
     return run(lambda: [LinkageState()], argv)
-
-
-if __name__ == '__main__':
-    sys.exit(main())

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 import math
-import sys
 from typing import Any
 
 from cam_motion.errors import ConfigurationError
@@ -332,7 +331,3 @@ def main(argv: list[str] | None = None) -> int:
 
     """
     return run(lambda: [MasterShaft()], argv)
-
-
-if __name__ == '__main__':
-    sys.exit(main())

@@ -7,7 +7,6 @@
 # language governing permissions and limitations under the License.
 """The verb ``format``: refused before anything is touched, refused by the line, carried out."""
 
-import os
 from pathlib import Path
 import signal
 import subprocess
@@ -30,14 +29,14 @@ SHORT = ROOT / 'config' / 'cutting_machine_short.yaml'
 
 
 @pytest.fixture(scope='module')
-def line(tmp_path_factory):
+def line(reserved_domain, tmp_path_factory):
     """Run the cutting machine, in a ROS domain of its own."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('ROS_DOMAIN_ID', str(70 + os.getpid() % 10))
+    with reserved_domain() as domain, pytest.MonkeyPatch.context() as patch:
+        patch.setenv('ROS_DOMAIN_ID', str(domain))
         patch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         patch.setenv('ROS_LOG_DIR', str(tmp_path_factory.mktemp('log')))
         process = subprocess.Popen(
-            [sys.executable, '-m', 'cam_motion.nodes.line', '--ros-args', '-r', '__ns:=/hall',
+            [sys.executable, '-m', 'cam_motion.start', 'line', '--ros-args', '-r', '__ns:=/hall',
              '--params-file', str(ROOT / 'config' / 'cutting_machine.yaml')], cwd=ROOT,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:

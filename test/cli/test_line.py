@@ -24,12 +24,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
-def start(tmp_path):
+def start(domain, tmp_path):
     """Give a function that starts ``cam_motion`` in a ROS domain of its own."""
     running = []
     environment = {
         **os.environ, 'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(tmp_path / 'log'),
-        'ROS_DOMAIN_ID': str(60 + os.getpid() % 10), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+        'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 
     def run(*arguments):
         process = subprocess.Popen(
@@ -92,8 +92,9 @@ def test_a_line_that_dies_is_no_success(start, machine_file):
     line = start('line', machine_file)
     wait_for(line, 'cycles/min', 'feeder')
     os.kill(children_of(line)[0], signal.SIGKILL)
-    line.communicate(timeout=40)
+    _, err = line.communicate(timeout=40)
     assert line.returncode == 1
+    assert 'line was ended by signal 9 (Killed)' in err
 
 
 def test_record_stops_after_its_time(start, read_json, machine_file, tmp_path):

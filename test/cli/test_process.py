@@ -35,9 +35,12 @@ def test_a_wrong_verb_exits_with_2(process):
     assert 'usage: cam_motion' in done.stderr
 
 
-def test_a_reader_that_leaves_is_no_error(machine_file):
+@pytest.mark.parametrize('arguments', [['check', '--json'], ['check'], ['laws']])
+def test_a_reader_that_leaves_is_no_error(machine_file, arguments):
+    verb, *options = arguments
+    source = [] if verb == 'laws' else [str(machine_file)]
     writer = subprocess.Popen(
-        [sys.executable, '-m', 'cam_motion', 'check', str(machine_file), '--json'],
+        [sys.executable, '-m', 'cam_motion', verb, *source, *options],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=machine_file.parents[1])
     writer.stdout.close()
     stderr = writer.stderr.read()
@@ -64,5 +67,14 @@ def test_verbs_without_ros_do_not_import_it(machine_file):
     code = 'import sys; from cam_motion.cli import main; main(["check", sys.argv[1]]); ' \
            'sys.exit(any(m in sys.modules for m in ("rclpy", "matplotlib", "rosbags")))'
     done = subprocess.run([sys.executable, '-c', code, str(machine_file)], timeout=50,
+                          cwd=machine_file.parents[1], capture_output=True, check=False)
+    assert done.returncode == 0
+
+
+@pytest.mark.parametrize('verb', ['laws', 'check', 'line'])
+def test_a_verb_does_not_wait_for_what_only_others_need(machine_file, verb):
+    code = 'import sys; from cam_motion.cli import build_parser; build_parser(sys.argv[1]); ' \
+           'sys.exit(any(m in sys.modules for m in ("scipy", "cam_motion.cli.size")))'
+    done = subprocess.run([sys.executable, '-c', code, verb], timeout=50,
                           cwd=machine_file.parents[1], capture_output=True, check=False)
     assert done.returncode == 0

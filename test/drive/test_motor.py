@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(20)
+pytestmark = pytest.mark.timeout(60)
 
 SYNCHRONOUS = 1500.0 * RPM
 ROUNDING = 1e-13

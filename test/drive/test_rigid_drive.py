@@ -14,7 +14,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-9  # of differences of sums of terms of the same size
 

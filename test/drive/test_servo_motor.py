@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(20)
+pytestmark = pytest.mark.timeout(60)
 
 PLATE = {'standstill_torque': 60.0, 'rated_torque': 50.0, 'rated_speed': 210.0,
          'peak_torque': 180.0, 'corner_speed': 200.0, 'max_speed': 400.0, 'inertia': 0.01,

@@ -15,7 +15,7 @@ from cam_motion.mechanism.umbrella import Umbrella
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ASSEMBLY = Assembly(Umbrella().linkage())
 NAMES = ASSEMBLY.linkage.variables

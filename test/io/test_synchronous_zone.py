@@ -17,7 +17,7 @@ from cam_motion.units import DEGREE, RPM, TURN
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 CONFIG = Path(__file__).resolve().parents[2] / 'config'
 SAME = 1e-12  # of the web's velocity

@@ -24,7 +24,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-12
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(20)
+pytestmark = pytest.mark.timeout(60)
 
 EXACT = 1e-12
 ELEVEN_DIGITS = 5e-11  # half a unit of the last digit of figures given to ten decimals

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 CLOSED_FORM = 1e-12  # both sides are exact: only rounding is left
 LAST_DIGIT = 0.51  # of the last digit printed in the table

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-12
 MET = 1e-9  # a condition is met to this share of the largest value of its derivative

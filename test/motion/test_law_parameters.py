@@ -13,7 +13,7 @@ from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.laws import LawParameter, LAWS, make_law
 import pytest
 
-pytestmark = pytest.mark.timeout(10)
+pytestmark = pytest.mark.timeout(60)
 
 EIGHTHS = [0.125, 0.25, 0.125, 0.0, 0.125, 0.25, 0.125]
 

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 CLOSED_FORM = 1e-12  # both sides are exact: only rounding is left
 ROUNDING_IN_SOURCE = 6e-5  # half a unit of the last of five printed digits (relative)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-13  # relative to the sum of magnitudes of all terms
 QUADRATURE = 1e-9  # scipy's own tolerance, loosened for fast waves

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-11  # relative to the largest magnitude of the derivative
 LARGE = 40_000  # more points than one block of the evaluator

@@ -18,7 +18,7 @@ from cam_motion.units import DEGREE, TURN
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(20)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-12
 PER_CYCLE = 4e-16 * TURN  # rounding of an angle, for each cycle it is away from zero

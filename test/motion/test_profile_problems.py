@@ -13,7 +13,7 @@ from cam_motion import CamProfile, segment
 from cam_motion.errors import ConfigurationError
 import pytest
 
-pytestmark = pytest.mark.timeout(10)
+pytestmark = pytest.mark.timeout(60)
 
 
 def problems(*segments, accumulate=False):

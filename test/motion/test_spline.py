@@ -32,7 +32,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-12
 SOLVED = 1e-8  # rounding of a solved spline with unequal steps, as a share of the derivative

@@ -12,7 +12,6 @@ Every test has a context and a domain to itself. Waits are for conditions and ge
 times what a quiet machine needs; nothing asserts how long something took.
 """
 
-import fcntl
 import itertools
 import os
 from pathlib import Path
@@ -20,7 +19,6 @@ import resource
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import warnings
 
@@ -46,7 +44,6 @@ with warnings.catch_warnings():
 
 ROOT = Path(__file__).resolve().parents[2]
 MACHINE = ROOT / 'config' / 'cutting_machine.yaml'
-DOMAINS = (*range(1, 101), *range(215, 231))  # whose ports no system hands out on its own
 PATIENCE = 30.0  # s
 CPU_SECONDS = 60  # that a process may use before it is killed
 DEEP = QoSProfile(depth=20000)
@@ -60,23 +57,6 @@ def surroundings(tmp_path_factory):
         patch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         patch.setenv('ROS_LOG_DIR', str(tmp_path_factory.mktemp('ros_log')))
         yield
-
-
-@pytest.fixture
-def domain():
-    """Reserve a ROS domain that no other run of these tests uses meanwhile."""
-    first = os.getpid() * 7 + next(_counter)
-    for offset in range(len(DOMAINS)):
-        number = DOMAINS[(first + offset) % len(DOMAINS)]
-        path = Path(tempfile.gettempdir()) / f'cam_motion_domain_{os.getuid()}_{number}'
-        with open(path, 'w') as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                continue
-            yield number
-            return
-    pytest.fail('no ROS domain is free')
 
 
 class World:
@@ -190,7 +170,7 @@ class Process:
         stem = f'{next(_counter)}_{module}'
         self.files = [open(folder / f'{stem}.{end}', 'w') for end in ('out', 'err')]
         self.popen = subprocess.Popen(
-            [sys.executable, '-m', f'cam_motion.nodes.{module}', '--ros-args',
+            [sys.executable, '-m', 'cam_motion.start', module, '--ros-args',
              *map(str, arguments)],
             cwd=folder, stdin=subprocess.DEVNULL, stdout=self.files[0], stderr=self.files[1],
             env={**os.environ, 'ROS_DOMAIN_ID': str(domain), 'PYTHONPATH': os.pathsep.join(

@@ -5,7 +5,7 @@
 # writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
-"""A node that is told to end while it is still being imported."""
+"""How processes begin and end: told to end during their imports, and with their work done."""
 
 import signal
 import subprocess
@@ -36,3 +36,27 @@ def test_a_signal_before_a_node_is_there_ends_it_without_a_word(number):
         process.send_signal(number)
         out, err = process.communicate(timeout=30)
     assert (process.returncode, out, err) == (0, '', '')
+
+
+@pytest.mark.parametrize('verb', ['line', 'record'])
+def test_a_verb_that_goes_on_until_it_is_told_obeys_as_early(verb):
+    code = SLOW.replace('start.master_shaft()', f"""
+sys.argv = ['cam_motion', {verb!r}]
+import importlib
+importlib.import_module = slow
+start.command_line()""")
+    with subprocess.Popen([sys.executable, '-c', code], text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE) as process:
+        assert process.stdout.readline() == f'cam_motion.cli.{verb}\n'
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=30)
+    assert (process.returncode, out, err) == (0, '', '')
+
+
+def test_what_is_torn_down_at_the_end_cannot_spoil_the_exit_code():
+    """As threads of DDS can, which the interpreter does not know."""
+    code = 'import atexit, os, sys; from cam_motion.start import leave; ' \
+           'atexit.register(os.abort); print("done"); sys.stderr.write("said"); leave(3)'
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, timeout=30,
+                          check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (3, 'done\n', 'said')

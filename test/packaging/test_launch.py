@@ -16,7 +16,7 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-pytestmark = pytest.mark.timeout(20)
+pytestmark = pytest.mark.timeout(60)
 
 MACHINE = {
     'line': {'ros__parameters': {'master': 'shaft', 'axes': ['a', 'b'], 'drives': ['a_drive']}},

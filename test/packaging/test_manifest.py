@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-pytestmark = pytest.mark.timeout(20)
+pytestmark = pytest.mark.timeout(60)
 
 # Libraries whose import, registry and rosdep names differ: import -> (registry, rosdep key).
 # None: rosdep has no key, so that a comment in package.xml names the library.

@@ -12,7 +12,7 @@ import re
 
 import pytest
 
-pytestmark = pytest.mark.timeout(20)
+pytestmark = pytest.mark.timeout(60)
 
 LONGEST = 400
 NOTICE = """\

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 ROUNDING = 1e-9
 AT_CYCLE_END = 1e-8  # rad; an end this near counts as reached

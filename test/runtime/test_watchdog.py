@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = pytest.mark.timeout(60)
 
 PERIOD_NS = 2_000_000
 RAMP = RampLimits(150.0, 3000.0)

@@ -28,22 +28,21 @@ if TYPE_CHECKING:
     from cam_motion.nodes.format_client import FormatClient
 
 
-def add_to(verbs: Any) -> None:
+def add_to(parser: argparse.ArgumentParser) -> None:
     """
-    Add the verb.
+    Add what the verb takes.
 
     Parameters
     ----------
-    verbs : argparse._SubParsersAction
-        The verbs.
+    parser : argparse.ArgumentParser
+        Parser of the verb.
 
     """
-    parser = verbs.add_parser(
-        'format', help='change the format of a running machine (needs ROS 2)',
-        description='Check the machine file of a new format against limits and interlocks at the '
-                    'present speed, let every axis of the running line check its part, and let '
-                    'all of them go over to it at the same shaft angle. Exit code 1 if any of '
-                    'this is refused: then nothing has changed.')
+    parser.description = (
+        'Check the machine file of a new format against limits and interlocks at the '
+        'present speed, let every axis of the running line check its part, and let '
+        'all of them go over to it at the same shaft angle. Exit code 1 if any of '
+        'this is refused: then nothing has changed.')
     add_config(parser)
     parser.add_argument('--at-deg', type=finite_number, metavar='X',
                         help='shaft angle at which to begin [deg] (default: where it is gentlest)')
