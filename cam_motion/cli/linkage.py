@@ -196,7 +196,7 @@ def _print(settings: LinkageSettings, motion: LinkageMotion) -> None:
     for name, angle in motion.transmission.items():
         out.print(f'transmission angle {name}: {number(angle / DEGREE)} deg')
     for name in linkage.inputs:
-        out.print(range_text(settings, name))
+        out.print(range_text(settings, name, pose))
     proof = pose.certificate
     out.print(f'on the branch of the start: {proof.steps} certified steps, Kantorovich number '
               f'at most {number(proof.kantorovich, 3)} of 0.5')

@@ -15,7 +15,7 @@ from typing import Any
 from cam_motion.io.linkage_config import LinkageSettings, rate_name
 from cam_motion.io.plain import finite
 from cam_motion.mechanism.linkage_motion import LinkageMotion
-from cam_motion.mechanism.pose import bound_text
+from cam_motion.mechanism.pose import bound_text, Pose
 from cam_motion.units import DEGREE
 
 
@@ -68,7 +68,8 @@ def _rest(settings: LinkageSettings, motion: LinkageMotion) -> dict[str, Any]:
             name: {'ax': point.acceleration.real, 'ay': point.acceleration.imag}
             for name, point in motion.points.items()},
         'transmission_deg': {name: angle / DEGREE for name, angle in motion.transmission.items()},
-        'ranges': {name: range_as_data(settings, name) for name in settings.linkage.inputs},
+        'ranges': {name: range_as_data(settings, name, pose)
+                   for name in settings.linkage.inputs},
         'certificate': {'steps': pose.certificate.steps,
                         'kantorovich': pose.certificate.kantorovich,
                         'orientation': pose.certificate.orientation,
@@ -76,9 +77,10 @@ def _rest(settings: LinkageSettings, motion: LinkageMotion) -> dict[str, Any]:
     }
 
 
-def range_as_data(settings: LinkageSettings, name: str) -> dict[str, Any]:
+def range_as_data(settings: LinkageSettings, name: str, pose: Pose | None = None,
+                  ) -> dict[str, Any]:
     """
-    Turn how far an input goes from the start into plain data.
+    Turn how far an input goes while the others stay into plain data.
 
     Parameters
     ----------
@@ -86,6 +88,8 @@ def range_as_data(settings: LinkageSettings, name: str) -> dict[str, Any]:
         The linkage.
     name : str
         The input.
+    pose : Pose, optional
+        The position to begin at; None takes the start.
 
     Returns
     -------
@@ -93,15 +97,15 @@ def range_as_data(settings: LinkageSettings, name: str) -> dict[str, Any]:
         Its bounds [m, rad], None where nothing stops it, and what stops it.
 
     """
-    found = settings.assembly.range_of(name)
+    found = settings.assembly.range_of(name, pose)
     return {'low': finite(found.low), 'high': finite(found.high),
             'at_low': found.at_low.text if found.at_low else None,
             'at_high': found.at_high.text if found.at_high else None}
 
 
-def range_text(settings: LinkageSettings, name: str) -> str:
+def range_text(settings: LinkageSettings, name: str, pose: Pose | None = None) -> str:
     """
-    Say how far an input goes from the start.
+    Say how far an input goes while the others stay.
 
     Parameters
     ----------
@@ -109,6 +113,8 @@ def range_text(settings: LinkageSettings, name: str) -> str:
         The linkage.
     name : str
         The input.
+    pose : Pose, optional
+        The position to begin at; None takes the start.
 
     Returns
     -------
@@ -116,7 +122,7 @@ def range_text(settings: LinkageSettings, name: str) -> str:
         One sentence.
 
     """
-    found = settings.assembly.range_of(name)
+    found = settings.assembly.range_of(name, pose)
     ends = [(f'{side} {bound_text(settings.linkage, name, value)}', what.text)
             for side, value, what in (('above', found.low, found.at_low),
                                       ('below', found.high, found.at_high)) if what]

@@ -166,5 +166,5 @@ def _cycle_problems(settings: LinkageSettings, axes: Mapping[str, CoupledAxis]) 
             pose = settings.assembly.follow(pose, inputs)
         except SingularError as error:
             return [replace(problem, rule=f'at shaft angle {phi / DEGREE:g} deg: {problem.rule}')
-                    for problem in settings.assembly.range_problems(inputs, error)]
+                    for problem in settings.assembly.range_problems(inputs, error, pose)]
     return []

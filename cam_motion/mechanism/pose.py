@@ -9,11 +9,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
-from cam_motion.errors import CamMotionError
+from cam_motion.errors import CamMotionError, Problem
 from cam_motion.mechanism.linkage import Linkage
 from cam_motion.mechanism.singular import Singularity
 from cam_motion.motion.piece import Array
@@ -162,6 +163,61 @@ class SingularError(CamMotionError):
         """Keep the position and the name of what happens there."""
         self.pose, self.singularity = pose, singularity
         super().__init__(f'{pose.text} is a singular position: {singularity.text}')
+
+
+def range_problem(pose: Pose, name: str, value: float, found: Range) -> Problem | None:
+    """
+    Say that an input is out of its range.
+
+    Parameters
+    ----------
+    pose : Pose
+        Where the other inputs stay.
+    name : str
+        The input.
+    value : float
+        Where it is wanted [m, rad].
+    found : Range
+        How far it goes while the others stay.
+
+    Returns
+    -------
+    Problem | None
+        The problem, its path the name of the input; None within the range.
+
+    """
+    beyond = found.at_low if value <= found.low else found.at_high
+    if found.low < value < found.high or beyond is None:
+        return None
+    linkage = pose.linkage
+    low, high = (bound_text(linkage, name, x) for x in (found.low, found.high))
+    others = ', '.join(f'{other} = {bound_text(linkage, other, pose[other])}'
+                       for other in linkage.inputs if other != name)
+    given = f'with {others} ' if others else ''
+    return Problem(
+        name, value, f'{given}the linkage can be assembled from {low} to {high}, both ends '
+        f'excluded; there {beyond.text}', 'stay within this range')
+
+
+def together_problem(inputs: Mapping[str, float], stopped: str) -> Problem:
+    """
+    Say that inputs cannot be reached although none is out of range by itself.
+
+    Parameters
+    ----------
+    inputs : Mapping[str, float]
+        Where they are wanted [m, rad].
+    stopped : str
+        What stops them.
+
+    Returns
+    -------
+    Problem
+        The problem, its path the names of the inputs.
+
+    """
+    return Problem(', '.join(inputs), tuple(inputs.values()), stopped,
+                   'give it another start, or go there by way of other inputs')
 
 
 def whole_turns(linkage: Linkage, name: str, way: float, bounds: Range) -> float:

@@ -10,10 +10,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from cam_motion.errors import Problem
 from cam_motion.mechanism.assembly import Assembly
-from cam_motion.mechanism.pose import Pose, Range, SingularError, whole_turns
+from cam_motion.mechanism.pose import (
+    Pose,
+    Range,
+    range_problem,
+    SingularError,
+    together_problem,
+    whole_turns,
+)
 from cam_motion.motion.piece import Array
 import numpy as np
 
@@ -158,9 +166,15 @@ class Tracker:
         if self.refusal is None:
             return []
         self.prepare()
-        names = self.assembly.linkage.inputs
-        return self.assembly.range_problems(
-            dict(zip(names, inputs)), self.refusal, self._ranges)
+        names, start = self.assembly.linkage.inputs, self.assembly.start
+        given = dict(zip(names, inputs))
+        found = [range_problem(start, name, value, self._ranges[name])
+                 for name, value in given.items()]
+        moved = sum(value != start[name] for name, value in given.items())
+        # how far an input goes may depend on the others, and to find that out would take time
+        now = f'; now {self.refusal}' if moved > 1 else ''
+        return [replace(problem, rule=problem.rule + now) for problem in found if problem] or [
+            together_problem(given, f'on the straight way there {self.refusal}')]
 
     def _worth_a_try(self, target: Array) -> bool:
         """Tell whether inputs may be reached although others before them were not."""

@@ -92,6 +92,45 @@ def test_a_refusal_states_the_range_and_names_the_singular_position(cam_motion):
     assert 'from 0.2 m to 2.2 m' in said and 'link2 and link3 come into line' in said
 
 
+FIVE_BAR = """
+five:
+  ros__parameters:
+    type: linkage
+    inputs: [a, b]
+    a: {start_deg: 120.0}
+    b: {start_deg: 60.0}
+    unknowns: [c, d]
+    c: {start_deg: 32.0}
+    d: {start_deg: 148.0}
+    bodies: [left, right, l2, r2]
+    left: {angle: a}
+    right: {angle: b}
+    l2: {angle: c}
+    r2: {angle: d}
+    vectors: [A, B, C, D, G]
+    A: {length: 1.0, body: left}
+    B: {length: 1.0, body: right}
+    C: {length: 1.2, body: l2}
+    D: {length: 1.2, body: r2}
+    G: {length: 1.0}
+    loops: [ring]
+    ring: {path: [A, C, -D, -B, -G]}
+"""
+
+
+def test_ranges_are_those_at_the_position_asked_for(cam_motion, read_json, tmp_path):
+    file = tmp_path / 'five.yaml'
+    file.write_text(FIVE_BAR)
+    said = cam_motion('linkage', file, '--at', 'a_deg=170,b_deg=100').stdout
+    assert 'a: turns through, nothing stops it' in said
+    data = read_json(cam_motion(
+        'linkage', file, '--at', 'a_deg=170,b_deg=100', '--json', '--all').stdout)
+    low, at, high = (math.degrees(each) for each in (
+        data['ranges']['b']['low'], data['inputs']['b'], data['ranges']['b']['high']))
+    assert low < at < high and data['ranges']['a']['low'] is None
+    assert (low, high) == pytest.approx((73.5595, 276.441), abs=1e-3)
+
+
 @pytest.mark.parametrize('at', ['h1', 'h1=', 'h1=x', 'h1=nan', 'h1=1,h1=2', '=1'])
 def test_a_broken_assignment_exits_with_2(cam_motion, at):
     done = cam_motion('linkage', UMBRELLA, '--at', at)

@@ -233,13 +233,49 @@ def five_bar():
                      'd': math.atan2(height, -0.5)})
 
 
-def test_inputs_that_are_out_of_reach_only_together_are_refused_as_such():
+def test_an_input_out_of_range_is_told_the_range_with_the_others_as_they_are_wanted():
     assembly = Assembly(five_bar())
     apart = {'a': math.radians(110.0), 'b': math.radians(70.0)}
-    assembly.at({'a': apart['a']})
-    assembly.at({'b': apart['b']})
     with pytest.raises(ConfigurationError, match='first and second come into line') as caught:
         assembly.at(apart)
+    (a, b) = caught.value.problems
+    assert (a.path, b.path) == ('a', 'b')
+    found = assembly.range_of('a', assembly.at({'b': apart['b']}))
+    assert math.degrees(found.high) < 110.0 < math.degrees(assembly.range_of('a').high)
+    assert 'with b = 70 deg' in a.rule and f'to {math.degrees(found.high):.6g} deg' in a.rule
+
+
+def test_where_the_straight_way_is_blocked_one_input_goes_after_the_other():
+    # with b = 100 deg the crank a turns through; on the straight way it is stopped before
+    turn, linkage = math.radians, replace(
+        five_bar(), vectors=tuple(replace(vector, length=length) for vector, length in zip(
+            five_bar().vectors, (1.0, 1.0, 1.2, 1.2, 1.0))),
+        start={'a': math.radians(120.0), 'b': math.radians(60.0), 'c': math.radians(32.0),
+               'd': math.radians(148.0)})
+    assembly = Assembly(linkage)
+    wanted = {'a': turn(250.0), 'b': turn(100.0)}
+    with pytest.raises(SingularError):
+        assembly.follow(assembly.start, wanted)
+    pose = assembly.at(wanted)
+    assert (pose['a'], pose['b']) == (wanted['a'], wanted['b'])
+    assert np.abs(assembly.equations.closure(pose.values)).max() < CLOSED_FORM
+    assert pose.certificate.kantorovich < 0.5
+    assert pose.certificate.orientation == assembly.start.certificate.orientation
+    # and what is out of range by itself stays so
+    with pytest.raises(ConfigurationError, match='with b = 60 deg'):
+        assembly.at({'a': wanted['a']})
+
+
+def test_what_no_way_leads_to_is_said_to_be_out_of_reach_together(monkeypatch):
+    assembly = Assembly(five_bar())
+    wanted = {'a': 1.8, 'b': 1.3}
+
+    def blocked(pose, inputs):
+        raise SingularError(assembly.start, assembly.range_of('a').at_high)
+
+    monkeypatch.setattr(assembly, 'reach', blocked)
+    with pytest.raises(ConfigurationError, match='one input after the other') as caught:
+        assembly.at(wanted)
     assert [problem.path for problem in caught.value.problems] == ['a, b']
 
 

@@ -118,6 +118,9 @@ def test_what_is_out_of_range_is_refused_and_the_last_position_kept():
     problem, = tracker.problems((2.5, 0.8))
     assert (problem.path, problem.value) == ('h1', 2.5)
     assert '0.2 m to 2.2 m' in problem.rule and 'link2 and link3' in problem.rule
+    assert 'with h2 = 0.8 m' in problem.rule and 'now' not in problem.rule
+    problem, = tracker.problems((2.5, 0.9))  # the other input has moved: where it was stopped
+    assert problem.rule.endswith(f'now {tracker.refusal}')
     assert arrive(tracker, (2.1, 0.8)) < 12
     assert tracker.refusal is None and tracker.problems((2.1, 0.8)) == []
 
