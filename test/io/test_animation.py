@@ -15,6 +15,7 @@ from pathlib import Path
 import shutil
 import subprocess
 import sys
+from types import SimpleNamespace
 
 from cam_motion.errors import CamMotionError, ConfigurationError
 from cam_motion.io.animation import lettering, mp4, save
@@ -22,6 +23,7 @@ from cam_motion.io.animation.axes import axes_film
 from cam_motion.io.animation.cam_disc import cam_disc_film
 from cam_motion.io.animation.course import angle_ticks, cycle_of, recorded_course
 from cam_motion.io.animation.drawing import round_below
+from cam_motion.io.animation.gif import write_gif
 from cam_motion.io.animation.linkage import case_film, driven_film
 from cam_motion.io.animation.pace import pace, Wishes
 from cam_motion.io.animation.page import film_as_data
@@ -420,6 +422,24 @@ def test_a_gif_reads_back(short, tmp_path):
     drawn = Stage(film, SMALL).frame(len(film) - 1)
     assert np.abs(pictures[-1] - drawn).mean() < 1.0
     assert list(path.parent.iterdir()) == [path]
+
+
+def test_what_stands_still_costs_a_gif_nothing_however_many_colours_there_are(tmp_path):
+    still = np.random.default_rng(1).integers(0, 256, (60, 80, 3), dtype=np.uint8)
+
+    def frame(k):  # all stands still but two opposite corners
+        picture = still.copy()
+        picture[0, k] = picture[-1, -1 - k] = 0
+        return picture
+
+    sizes = []
+    for count in (2, 12):
+        film = type('Film', (), {'fps': 25.0, '__len__': lambda _, count=count: count})()
+        stage = SimpleNamespace(film=film, frame=frame)
+        write_gif(stage, range(count), tmp_path / 'still.gif')
+        sizes.append((tmp_path / 'still.gif').stat().st_size)
+    # a further frame is little more than its palette of 768 bytes, not its 4800 pixels
+    assert (sizes[1] - sizes[0]) / 10 < 1200
 
 
 def test_an_mp4_decodes(short, tmp_path):

@@ -21,7 +21,7 @@ FASTEST_FPS = 50.0
 """Frames per second that viewers still show: they slow down below 0.02 s a frame."""
 
 _SAMPLES = 5  # frames whose colours become the palette
-_COLOURS = 256
+_COLOURS = 255  # of 256: the one left over stands for what stays as it was in the frame before
 _ALIKE = 0xF8F8F8
 
 
