@@ -27,13 +27,10 @@ from cam_motion.cli.terminal import (
 )
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.config import read_sections
-from cam_motion.io.linkage_config import (
-    build_linkage,
-    linkage_names,
-    LinkageSettings,
-    read_inputs,
-)
-from cam_motion.io.linkage_data import motion_as_data, range_text
+from cam_motion.io.linkage_config import build_linkage, linkage_names
+from cam_motion.io.linkage_data import effort_texts, motion_as_data, range_text
+from cam_motion.io.linkage_inputs import place_inputs
+from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.mechanism.linkage_motion import LinkageMotion, move
 from cam_motion.units import DEGREE
 
@@ -93,8 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     settings = _load(arguments.config, arguments.name)
     try:
-        inputs = read_inputs(settings, arguments.at)
-        pose = settings.assembly.at(inputs.values)
+        inputs, pose = place_inputs(settings, arguments.at)
     except ConfigurationError as error:
         raise ConfigurationError(problem.below('--at') for problem in error.problems) from error
     motion = move(settings.assembly, pose, inputs.rates, inputs.accelerations)
@@ -195,6 +191,8 @@ def _print(settings: LinkageSettings, motion: LinkageMotion) -> None:
         out.print(points)
     for name, angle in motion.transmission.items():
         out.print(f'transmission angle {name}: {number(angle / DEGREE)} deg')
+    for text in effort_texts(settings, pose):
+        out.print(text)
     for name in linkage.inputs:
         out.print(range_text(settings, name, pose))
     proof = pose.certificate

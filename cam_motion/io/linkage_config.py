@@ -10,120 +10,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-import math
+from dataclasses import replace
 from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import linkage_parameters as tables
 from cam_motion.io.axis import names_in, split_below, Values
+from cam_motion.io.linkage_inputs import place_inputs
+from cam_motion.io.linkage_loads import read_loads
+from cam_motion.io.linkage_settings import InputDrive, LinkageCase, LinkageSettings
 from cam_motion.io.parameters import check_values, ParameterSpec
 from cam_motion.mechanism.assembly import Assembly
 from cam_motion.mechanism.linkage import Body, Linkage, Loop, Point, Transmission, Vector
 from cam_motion.mechanism.pose import SingularError
 from cam_motion.units import DEGREE
-
-
-@dataclass(frozen=True)
-class LinkageInputs:
-    """
-    What the inputs of a linkage do at one moment.
-
-    Attributes
-    ----------
-    values, rates, accelerations : Mapping[str, float]
-        Inputs and their derivatives by time [m, rad]; those left out stand at the start.
-
-    """
-
-    values: Mapping[str, float] = field(default_factory=dict)
-    rates: Mapping[str, float] = field(default_factory=dict)
-    accelerations: Mapping[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class LinkageCase:
-    """
-    A motion to look at: all inputs at constant rates.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    inputs : LinkageInputs
-        Where it begins, and the rates.
-    duration : float
-        How long it takes [s].
-
-    """
-
-    name: str
-    inputs: LinkageInputs
-    duration: float
-
-
-@dataclass(frozen=True)
-class InputDrive:
-    """
-    What an axis makes of an input: offset + factor · position of the axis.
-
-    Attributes
-    ----------
-    axis : str
-        Name of the axis.
-    factor : float
-        Change of the input per unit of the axis: the radius of a spool, else 1.
-    offset : float
-        The input where the axis is at zero [m, rad]: with a spool the start, else 0.
-
-    """
-
-    axis: str
-    factor: float = 1.0
-    offset: float = 0.0
-
-
-@dataclass(frozen=True)
-class LinkageSettings:
-    """
-    A linkage with what a machine file says of it.
-
-    Attributes
-    ----------
-    name : str
-        Name of its section.
-    assembly : Assembly
-        The linkage on the branch of its start.
-    spools : Mapping[str, float]
-        Radius of the spool that winds an input, by input [m].
-    cases : Mapping[str, LinkageCase]
-        Motions to look at.
-    values : Mapping[str, Any]
-        Every parameter of the section itself, checked.
-    drives : Mapping[str, InputDrive]
-        The axes that drive inputs, by input; other inputs stay at the start.
-    forces : Mapping[str, complex]
-        Forces on points that the inputs hold, x + j y, by point [N].
-
-    """
-
-    name: str
-    assembly: Assembly
-    spools: Mapping[str, float]
-    cases: Mapping[str, LinkageCase]
-    values: Values = field(default_factory=dict)
-    drives: Mapping[str, InputDrive] = field(default_factory=dict)
-    forces: Mapping[str, complex] = field(default_factory=dict)
-
-    @property
-    def linkage(self) -> Linkage:
-        """Give the linkage itself."""
-        return self.assembly.linkage
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """List the axes that drive inputs, each once."""
-        return tuple(dict.fromkeys(drive.axis for drive in self.drives.values()))
 
 
 def linkage_names(sections: Mapping[str, Values]) -> list[str]:
@@ -249,8 +149,9 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
     drives = {each: InputDrive(variable['axis'], spools.get(each, 1.0),
                                start[each] if each in spools else 0.0)
               for each, variable in parts['inputs'].items() if variable['axis'] is not None}
-    forces, problems = _forces(parts['loads'], parts['points'])
-    settings = LinkageSettings(name, Assembly(linkage), spools, {}, values, drives, forces)
+    loads, problems = read_loads(parts['loads'], linkage)
+    settings = LinkageSettings(name, Assembly(linkage), spools, {}, values, drives, loads.forces,
+                               loads.torques)
     cases = {}
     for each in names['motions']:
         try:
@@ -260,60 +161,6 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
     if problems:
         raise ConfigurationError(problems)
     return replace(settings, cases=cases)
-
-
-def read_inputs(settings: LinkageSettings, given: Mapping[str, float]) -> LinkageInputs:
-    """
-    Read what the inputs do, in the words of people.
-
-    Parameters
-    ----------
-    settings : LinkageSettings
-        The linkage.
-    given : Mapping[str, float]
-        For an input ``h``: ``h`` [m, rad] or ``h_deg`` [deg], ``h_dot``, ``h_ddot``, and where a
-        spool winds it ``h_crank``, the angular velocity of its crank [rad/s].
-
-    Returns
-    -------
-    LinkageInputs
-        The same in SI.
-
-    Raises
-    ------
-    ConfigurationError
-        With every name that says nothing, or says it twice.
-
-    """
-    known, problems = _keys(settings), []
-    found: tuple[dict[str, float], ...] = ({}, {}, {})
-    for key, value in given.items():
-        if key not in known:
-            problems.append(Problem(key, value, 'says nothing about an input',
-                                    'known are: ' + ', '.join(known)))
-            continue
-        name, order, factor = known[key]
-        if not math.isfinite(value):
-            problems.append(Problem(key, value, 'must be a finite number'))
-        if name in found[order]:
-            problems.append(Problem(key, value, 'is given in another way too', 'leave one out'))
-        found[order][name] = value * factor
-    if problems:
-        raise ConfigurationError(problems)
-    return LinkageInputs(*found)
-
-
-def _keys(settings: LinkageSettings) -> dict[str, tuple[str, int, float]]:
-    """Tell for every key that is understood: its input, the derivative, the factor to SI."""
-    known: dict[str, tuple[str, int, float]] = {}
-    for name in settings.linkage.inputs:
-        known |= {name: (name, 0, 1.0), f'{name}_dot': (name, 1, 1.0),
-                  f'{name}_ddot': (name, 2, 1.0)}
-        if name in settings.linkage.angles:
-            known[f'{name}_deg'] = (name, 0, DEGREE)
-        if name in settings.spools:
-            known[f'{name}_crank'] = (name, 1, settings.spools[name])
-    return known
 
 
 def _case_table(inputs: list[str]) -> tuple[ParameterSpec, ...]:
@@ -326,9 +173,9 @@ def _case_table(inputs: list[str]) -> tuple[ParameterSpec, ...]:
 def _case(settings: LinkageSettings, name: str, given: Values) -> LinkageCase:
     """Build a motion, and go through it once."""
     duration = float(given['duration'])
-    case = LinkageCase(name, read_inputs(settings, {
-        key: float(value) for key, value in given.items() if key != 'duration'}), duration)
-    begin = settings.assembly.at(case.inputs.values)
+    inputs, begin = place_inputs(settings, {
+        key: float(value) for key, value in given.items() if key != 'duration'})
+    case = LinkageCase(name, inputs, duration)
     end = {key: begin[key] + rate * duration for key, rate in case.inputs.rates.items()}
     try:
         settings.assembly.follow(begin, end)
@@ -336,20 +183,6 @@ def _case(settings: LinkageSettings, name: str, given: Values) -> LinkageCase:
         raise ConfigurationError([Problem(
             'duration', duration, f'on the way {error}', 'stop before it')]) from error
     return case
-
-
-def _forces(loads: Mapping[str, Mapping[str, Any]], points: Mapping[str, Any],
-            ) -> tuple[dict[str, complex], list[Problem]]:
-    """Add up the forces on each point."""
-    forces: dict[str, complex] = {}
-    problems = []
-    for name, load in loads.items():
-        point = load['point']
-        if point not in points:
-            problems.append(Problem(f'{name}.point', point, 'must be a point of the linkage',
-                                    'known are: ' + ', '.join(points)))
-        forces[point] = forces.get(point, 0.0) + complex(load['force_x'], load['force_y'])
-    return forces, problems
 
 
 def _start(variables: Mapping[str, Mapping[str, Any]], angles: list[str | None],

@@ -12,9 +12,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from cam_motion.io.linkage_config import LinkageSettings, rate_name
+from cam_motion.io.linkage_config import rate_name
+from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.io.plain import finite
-from cam_motion.mechanism.linkage_motion import LinkageMotion
+from cam_motion.mechanism.linkage_motion import holding_efforts, LinkageMotion
 from cam_motion.mechanism.pose import bound_text, Pose
 from cam_motion.units import DEGREE
 
@@ -37,7 +38,8 @@ def motion_as_data(settings: LinkageSettings, motion: LinkageMotion, everything:
     -------
     dict[str, Any]
         What ``cam_motion linkage --json`` prints: ``angles_deg`` in (-180, 180], ``omega`` and
-        ``points``; ``lengths`` where loops determine any.
+        ``points``; ``lengths`` where loops determine any; ``efforts`` where there are loads, and
+        ``crank_torques`` of the inputs among them that a spool winds.
 
     """
     linkage = settings.linkage
@@ -54,6 +56,12 @@ def motion_as_data(settings: LinkageSettings, motion: LinkageMotion, everything:
     if lengths:
         data['lengths'] = {name: {'value': motion.position[name], 'rate': motion.velocity[name]}
                            for name in lengths}
+    if settings.loaded:
+        efforts = _efforts(settings, motion.pose)
+        data['efforts'] = efforts
+        if settings.spools:
+            data['crank_torques'] = {name: efforts[name] * radius
+                                     for name, radius in settings.spools.items()}
     if everything:
         data |= _rest(settings, motion)
     return data
@@ -75,6 +83,39 @@ def _rest(settings: LinkageSettings, motion: LinkageMotion) -> dict[str, Any]:
                         'orientation': pose.certificate.orientation,
                         'clearance': pose.clearance},
     }
+
+
+def effort_texts(settings: LinkageSettings, pose: Pose) -> list[str]:
+    """
+    Say what the inputs must exert to hold the loads.
+
+    Parameters
+    ----------
+    settings : LinkageSettings
+        The linkage.
+    pose : Pose
+        Its position.
+
+    Returns
+    -------
+    list[str]
+        One sentence for each input; none without loads.
+
+    """
+    if not settings.loaded:
+        return []
+    texts = []
+    for name, effort in _efforts(settings, pose).items():
+        held = f'{effort:.6g} {"N m" if name in settings.linkage.angles else "N"}'
+        if name in settings.spools:
+            held += f', {effort * settings.spools[name]:.6g} N m at the crank of its spool'
+        texts.append(f'{name} holds the loads with {held}')
+    return texts
+
+
+def _efforts(settings: LinkageSettings, pose: Pose) -> dict[str, float]:
+    return {name: effort + 0.0 for name, effort in holding_efforts(  # no minus before a zero
+        settings.assembly, pose, settings.forces, settings.torques).items()}
 
 
 def range_as_data(settings: LinkageSettings, name: str, pose: Pose | None = None,

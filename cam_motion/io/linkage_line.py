@@ -16,8 +16,9 @@ from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import CoupledAxis, names_in, Values
 from cam_motion.io.axis_limits import CascadedAxis
 from cam_motion.io.interlocks import motions_of
-from cam_motion.io.linkage_config import build_linkage, LinkageSettings
+from cam_motion.io.linkage_config import build_linkage
 from cam_motion.io.linkage_parameters import LINKAGE, PARTS
+from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.io.parameters import ParameterSpec
 from cam_motion.mechanism.pose import SingularError
 from cam_motion.runtime.interlock import common_turns

@@ -27,7 +27,7 @@ LINKAGE = (
     ParameterSpec('points', 'string_list', [], 'Names of the points of interest.'),
     ParameterSpec('transmissions', 'string_list', [], 'Names of the transmission angles.'),
     ParameterSpec('loads', 'string_list', [],
-                  'Names of the forces on points, which the inputs hold.'),
+                  'Names of the forces and torques that the inputs hold.'),
     ParameterSpec('motions', 'string_list', [], 'Names of the motions to draw.'),
     ParameterSpec('joint_states_hz', 'double', 0.0,
                   'How often the joint states are published; 0: at every tick.', 'Hz', least=0.0,
@@ -90,9 +90,13 @@ PARTS: dict[str, tuple[ParameterSpec, ...]] = {
         ParameterSpec(end, 'string_list', REQUIRED, 'Vectors whose sum is one direction.')
         for end in ('first', 'second')),
     'loads': (
-        ParameterSpec('point', 'string', REQUIRED, 'The point that the force acts on.'),
-        ParameterSpec('force_x', 'double', 0.0, 'Its part along x.', 'N'),
-        ParameterSpec('force_y', 'double', 0.0, 'Its part along y.', 'N'),
+        ParameterSpec('point', 'string', None, 'The point that a force acts on.'),
+        ParameterSpec('force_x', 'double', None, 'Its part along x.', 'N'),
+        ParameterSpec('force_y', 'double', None, 'Its part along y.', 'N'),
+        ParameterSpec('variable', 'string', None,
+                      'The angle that a torque acts on, or the length that a force acts along.'),
+        ParameterSpec('torque', 'double', None, 'The torque, counterclockwise.', 'N m'),
+        ParameterSpec('force', 'double', None, 'The force, the way the length grows.', 'N'),
     ),
     'motions': MOTION,
 }

@@ -20,7 +20,7 @@ from collections.abc import Sequence
 import math
 from xml.etree import ElementTree as Xml
 
-from cam_motion.io.linkage_config import LinkageSettings
+from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.mechanism.joints import origin_joints, repeated_joints
 from cam_motion.mechanism.outline import Outline, Piece
 

@@ -23,8 +23,8 @@ from cam_motion.io.axis_limits import in_cascade, speed_problems
 from cam_motion.io.cam_drive_config import build_cam_drive, cam_on_shaft, CamDriveSettings
 from cam_motion.io.interlocks import build_interlocks, judge, JudgedInterlock, line_values
 from cam_motion.io.line_parts import guess_line, rival_problems, shaft_drives
-from cam_motion.io.linkage_config import LinkageSettings
 from cam_motion.io.linkage_line import build_linkages_of
+from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.io.parameters import check_values
 from cam_motion.io.servo_config import build_motor, build_servo, SERVO, ServoSettings
 from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO_DRIVE

@@ -24,7 +24,8 @@ from cam_motion.io.cam_drive_parameters import CAM_DRIVE
 from cam_motion.io.contour import check_discs
 from cam_motion.io.interlocks import JudgedInterlock, line_values
 from cam_motion.io.line_parts import guess_line, shaft_drives
-from cam_motion.io.linkage_config import build_linkages, linkage_names, LinkageSettings
+from cam_motion.io.linkage_config import build_linkages, linkage_names
+from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.io.machine import build_machine, Machine
 from cam_motion.io.parameters import check_values
 from cam_motion.motion.continuity import Continuity, continuity_of

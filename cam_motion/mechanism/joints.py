@@ -87,6 +87,8 @@ class LinkageJoints:
         Its pieces.
     forces : Mapping[str, complex]
         Forces on points that the inputs hold, x + j y [N]; empty for none.
+    torques : Mapping[str, float], optional
+        Loads along variables that they hold: torques on angles [N m], forces along lengths [N].
 
     Attributes
     ----------
@@ -97,7 +99,8 @@ class LinkageJoints:
     """
 
     def __init__(self, assembly: Assembly, outline: Outline,
-                 forces: Mapping[str, complex]) -> None:
+                 forces: Mapping[str, complex],
+                 torques: Mapping[str, float] | None = None) -> None:
         """Gather what moves."""
         self._equations = assembly.equations
         self._inputs = len(assembly.linkage.inputs)
@@ -111,11 +114,14 @@ class LinkageJoints:
             [piece.origin for piece in moving]).reshape(
                 len(moving), len(assembly.linkage.vectors)))
         self._count = len(moving)
-        # the power of all forces is this sum over the velocities of the vectors
-        self._load = sum(
+        # the power of the loads: this sum over the velocities of the vectors, and the second one
+        # over the rates of the variables
+        self._loaded = bool(forces or torques)
+        self._force = sum(
             (np.conj(forces[point.name]) * row for point, row in zip(
                 assembly.linkage.points, self._equations.points) if point.name in forces),
-            np.zeros(len(assembly.linkage.vectors), dtype=np.complex128)) if forces else None
+            np.zeros(len(assembly.linkage.vectors), dtype=np.complex128))
+        self._torque = np.array([(torques or {}).get(name, 0.0) for name in variables])
 
     def at(self, values: Array, rates: Array, gain: Array,
            ) -> tuple[list[float], list[float], list[float]]:
@@ -145,9 +151,9 @@ class LinkageJoints:
             velocities += (speeds[k], speeds[count + k])
         positions += [positions[k] for k in self._repeated]
         velocities += [velocities[k] for k in self._repeated]
-        if self._load is None:
+        if not self._loaded:
             return positions, velocities, []
-        power = np.real(self._load @ self._equations.slopes(values))
+        power = np.real(self._force @ self._equations.slopes(values)) + self._torque
         efforts = [0.0] * len(self.names)
         efforts[:self._inputs] = (-(power[:self._inputs] + power[self._inputs:] @ gain)).tolist()
         return positions, velocities, efforts

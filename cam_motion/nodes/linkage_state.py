@@ -94,8 +94,8 @@ class LinkageState(ManagedNode):
         self._settings = settings
         self._tracker = Tracker(assembly)
         self._tracker.prepare()
-        self._joints = LinkageJoints(assembly, outline, settings.forces)
-        self._codec = JointStateCodec(self._joints.names, with_effort=bool(settings.forces))
+        self._joints = LinkageJoints(assembly, outline, settings.forces, settings.torques)
+        self._codec = JointStateCodec(self._joints.names, with_effort=settings.loaded)
         self._markers = LinkageMarkers(
             assembly, outline, own['frame_id'], own['velocity_scale'],
             max(_LEAST_LIFE, _OUTLIVES / hz if hz else 0.0))

@@ -87,9 +87,38 @@ def test_an_input_that_cannot_be_used_exits_with_2(cam_motion, at, paths):
     assert all(path in done.stderr for path in paths)
 
 
+def test_a_refusal_uses_the_words_of_the_question(cam_motion, tmp_path):
+    file = tmp_path / 'five.yaml'
+    file.write_text(FIVE_BAR)
+    said = cam_motion('linkage', file, '--at', 'a_deg=250').stderr
+    assert '--at.a_deg' in said and '250.0' in said and '4.36' not in said
+
+
 def test_a_refusal_states_the_range_and_names_the_singular_position(cam_motion):
     said = cam_motion('linkage', UMBRELLA, '--at', 'h1=2.5').stderr
     assert 'from 0.2 m to 2.2 m' in said and 'link2 and link3 come into line' in said
+
+
+def test_efforts_that_hold_loads_are_those_of_virtual_work(cam_motion, read_json, tmp_path):
+    file = tmp_path / 'bars.yaml'
+    loads = '    loads: [gas, brake, wind]\n    gas: {variable: x, force: -500.0}\n' \
+        '    brake: {variable: theta3, torque: 3.0}\n    wind: {point: P, force_y: 2.0}\n' \
+        '    points: [P]\n    P: {path: [r]}\n'
+    file.write_text(SLIDER_CRANK + loads)
+    at = ('--at', 'turn=1.0,turn_dot=1.0')
+    data = read_json(cam_motion('linkage', file, '--json', *at).stdout)
+    power = (-500.0 * data['lengths']['x']['rate'] + 3.0 * data['omega']['omega3']
+             + 2.0 * data['points']['P']['vy'])
+    assert data['efforts'] == pytest.approx({'turn': -power})
+    said = cam_motion('linkage', file, *at).stdout
+    assert f'turn holds the loads with {-power:.6g} N m' in said
+    # a spool winds an input: what its crank holds too
+    text = UMBRELLA.read_text() + '\n    loads: [rain]\n    rain: {point: E, force_y: -10.0}\n'
+    file.write_text(text)
+    data = read_json(cam_motion('linkage', file, '--json').stdout)
+    assert data['efforts']['h2'] != 0.0
+    assert data['crank_torques'] == pytest.approx({'h2': 0.02 * data['efforts']['h2']})
+    assert 'N m at the crank of its spool' in cam_motion('linkage', file).stdout
 
 
 FIVE_BAR = """

@@ -99,6 +99,30 @@ def test_a_problem_is_said_at_its_path(path, value, problem):
     assert all(each.rule for each in caught.value.problems)
 
 
+@pytest.mark.parametrize('load, problem', [
+    ({}, 'w'), ({'point': 'D', 'variable': 'h1', 'force': 1.0}, 'w'),
+    ({'point': 'D'}, 'w.force_x'), ({'point': 'Z', 'force_x': 1.0}, 'w.point'),
+    ({'point': 'D', 'force_x': 1.0, 'torque': 1.0}, 'w.torque'),
+    ({'variable': 'h9', 'force': 1.0}, 'w.variable'), ({'variable': 'theta2'}, 'w.torque'),
+    ({'variable': 'theta2', 'force': 1.0}, 'w.force'),
+    ({'variable': 'h1', 'torque': 1.0}, 'w.torque'),
+])
+def test_a_load_that_acts_on_nothing_is_said_at_its_path(load, problem):
+    with pytest.raises(ConfigurationError) as caught:
+        build_linkage('umbrella', flatten({**GOOD, 'loads': ['w'], 'w': load}))
+    assert [each.path for each in caught.value.problems] == [problem]
+
+
+def test_loads_add_up_on_what_they_act_on():
+    found = build_linkage('umbrella', flatten({
+        **GOOD, 'loads': ['a', 'b', 'c', 'd'], 'a': {'point': 'D', 'force_x': 1.0},
+        'b': {'point': 'D', 'force_y': -2.0}, 'c': {'variable': 'theta2', 'torque': 5.0},
+        'd': {'variable': 'h1', 'force': -3.0}}))
+    assert found.forces == {'D': 1.0 - 2.0j}
+    assert found.torques == {'theta2': 5.0, 'h1': -3.0}
+    assert found.loaded and not build_linkage('umbrella', flatten(GOOD)).loaded
+
+
 def test_problems_are_said_all_at_once():
     values = {**edited('L2.length', -1.0), 'd1.turn_deg': 'left', 'link5.angel': 'theta5',
               'tip.path': 'd4'}

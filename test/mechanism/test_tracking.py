@@ -180,8 +180,13 @@ def test_efforts_are_those_of_virtual_work():
     tracker = Tracker(UMBRELLA)
     arrive(tracker, (1.3, 0.9))
     forces = {'D': 3.0 - 10.0j, 'C': 2.0j}
-    joints = LinkageJoints(UMBRELLA, Outline(UMBRELLA), forces)
+    torques = {'theta5': 4.0, 'h1': -2.0}
+    joints = LinkageJoints(UMBRELLA, Outline(UMBRELLA), forces, torques)
     efforts = joints.at(tracker.pose.values, tracker.rates((0.0, 0.0)), tracker.gain())[2]
-    want = holding_efforts(UMBRELLA, tracker.pose, forces)
+    want = holding_efforts(UMBRELLA, tracker.pose, forces, torques)
     assert efforts[:2] == pytest.approx(list(want.values()), abs=1e-11)
     assert len(efforts) == len(joints.names) and not any(efforts[2:])
+    joints = LinkageJoints(UMBRELLA, Outline(UMBRELLA), {}, torques)
+    efforts = joints.at(tracker.pose.values, tracker.rates((0.0, 0.0)), tracker.gain())[2]
+    want = holding_efforts(UMBRELLA, tracker.pose, {}, torques)
+    assert efforts[:2] == pytest.approx(list(want.values()), abs=1e-11)

@@ -24,7 +24,8 @@ from cam_motion.io.axis import Values
 from cam_motion.io.cam_disc_config import build_cam_discs, CamDiscSettings
 from cam_motion.io.config import read_sections
 from cam_motion.io.line_parts import guess_line
-from cam_motion.io.linkage_config import build_linkages, LinkageSettings
+from cam_motion.io.linkage_config import build_linkages
+from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.io.machine import build_machine, Machine
 from cam_motion.io.recording import read_recording
 from cam_motion.io.summary import with_speed

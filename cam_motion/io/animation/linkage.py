@@ -16,7 +16,8 @@ from cam_motion.io.animation.course import Course
 from cam_motion.io.animation.drawing import Arrows, Drawing, Label, Places, Shape, THIN, TRACE
 from cam_motion.io.animation.film import Curve, Film, Panel
 from cam_motion.io.animation.pace import Pace, pace, Wishes
-from cam_motion.io.linkage_config import LinkageCase, LinkageSettings, rate_name
+from cam_motion.io.linkage_config import rate_name
+from cam_motion.io.linkage_settings import LinkageCase, LinkageSettings
 from cam_motion.io.plots.linkage import away_from_middle, moving_points, NAME_AWAY, run_case
 from cam_motion.io.plots.style import COLOURS
 from cam_motion.mechanism.linkage_motion import LinkageMotion, sweep

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from cam_motion.io.linkage_config import LinkageCase, LinkageSettings, rate_name
+from cam_motion.io.linkage_config import rate_name
+from cam_motion.io.linkage_settings import LinkageCase, LinkageSettings
 from cam_motion.io.plots.style import COLOURS, GREY, new_figure, styled
 from cam_motion.mechanism.linkage_motion import LinkageMotion, sweep
 from cam_motion.mechanism.loops import ComplexArray
