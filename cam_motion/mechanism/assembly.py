@@ -14,6 +14,7 @@ from itertools import islice, permutations
 import math
 
 from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.mechanism.closing import closing_problems
 from cam_motion.mechanism.continuation import Continuation
 from cam_motion.mechanism.linkage import Linkage
 from cam_motion.mechanism.pose import (
@@ -59,12 +60,7 @@ class Assembly(Continuation):
         rough = np.array([linkage.start[name] for name in linkage.variables])
         start = self.close(rough)
         if start is None:
-            gap = float(np.abs(self.equations.closure(rough)).max())
-            raise ConfigurationError([Problem(
-                'unknowns', {name: float(rough[self._inputs + k]) for k, name in enumerate(
-                    self.linkage.unknowns)},
-                f'the start values name no branch: the loops miss by {gap:.4g} m there',
-                'measure them on a drawing: near a singular position more closely')])
+            raise ConfigurationError(closing_problems(linkage, self.equations, rough))
         self.start = start
 
     def at(self, inputs: Mapping[str, float]) -> Pose:

@@ -345,6 +345,51 @@ def test_a_start_that_names_no_branch_is_refused():
         Assembly(replace(good, start={**good.start, 'theta3': good.start['theta3'] + 1.5}))
 
 
+def problem_of(linkage):
+    """Give the one problem of assembling a linkage."""
+    with pytest.raises(ConfigurationError) as caught:
+        Assembly(linkage)
+    problem, = caught.value.problems
+    return problem
+
+
+@pytest.mark.parametrize('length, start, words', [
+    (9.0, 1.0, 'h1 = 1 m, whatever the angles: L2 is 9 m long, d1 and slide only 2.2 m'),
+    (1.0, 2.3, 'h1 = 2.3 m, whatever the angles: slide is 2.3 m long, d1 and L2 only 2.2 m'),
+])
+def test_lengths_that_cannot_close_are_named_with_their_loop_and_input(length, start, words):
+    good = Umbrella().linkage()
+    vectors = tuple(replace(each, length=length) if each.name == 'L2' else each
+                    for each in good.vectors)
+    problem = problem_of(replace(good, vectors=vectors, start={**good.start, 'h1': start}))
+    assert problem.path == 'rib.path' and words in problem.rule
+
+
+def test_vectors_of_one_body_are_one_side():
+    # L6 and the stretch are square to each other on link 6: 1.6 m, more than d4 and L5
+    good = Umbrella().linkage()
+    problem = problem_of(replace(good, start={**good.start, 'h2': 1.6}))
+    side = math.hypot(0.1, 1.6)
+    assert problem.path == 'tip.path'
+    assert f'L6 and stretch are together {side:.6g} m long' in problem.rule
+
+
+def test_a_start_that_misses_says_which_loop_and_speaks_of_degrees():
+    good = Umbrella().linkage()
+    problem = problem_of(replace(good, start={**good.start, 'theta5': math.radians(40.0)}))
+    assert 'theta5 = 40 deg' in problem.value and 'h1 = 1 m, h2 = 0.8 m' in problem.rule
+    assert 'loop tip misses by' in problem.rule and 'loop rib' not in problem.rule
+
+
+def test_a_start_in_a_singular_position_is_said_to_be_one():
+    problem = problem_of(Linkage(
+        'flat', (Body('first', 'a'), Body('second', 'b')),
+        (Vector('l', 0.6, 'first'), Vector('q', 0.4, 'second'), Vector('s', 'x')),
+        (Loop('ring', ('l', 'q', '-s')),), (), ('x',), ('a', 'b'),
+        {'x': 1.0, 'a': 0.0, 'b': 0.0}))
+    assert 'first and second come into line in loop ring' in problem.rule
+
+
 @pytest.mark.parametrize('make', [
     lambda: four_bar(0.1, 0.1, 0.1, 0.5), lambda: slider_crank(0.5, 0.1, start=1.5)])
 def test_lengths_that_never_close_are_refused(make):
