@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -19,7 +19,7 @@ from cam_motion.io.axis import names_in, split_below, Values
 from cam_motion.io.linkage_inputs import place_inputs
 from cam_motion.io.linkage_loads import read_loads
 from cam_motion.io.linkage_settings import InputDrive, LinkageCase, LinkageSettings
-from cam_motion.io.parameters import check_values, ParameterSpec
+from cam_motion.io.parameters import check_values, is_of_every_node, ParameterSpec
 from cam_motion.mechanism.assembly import Assembly
 from cam_motion.mechanism.linkage import Body, Linkage, Loop, Point, Transmission, Vector
 from cam_motion.mechanism.pose import SingularError
@@ -119,10 +119,12 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
                      for k, each in enumerate(listed) if each in {*taken, *every, *listed[:k]}]
         every += listed
     own, below = split_below(given, every)
+    bare = {each: own.pop(each) for each in every if each in own and each not in taken}
+    own, unlisted = _take_unlisted(own, taken)
     values, wrong = check_values(tables.LINKAGE, own)
     if any(problem.path in tables.PARTS for problem in wrong):  # not all names are known
-        wrong = [problem for problem in wrong if problem.path in taken]
-    problems += wrong
+        wrong, unlisted = [problem for problem in wrong if problem.path in taken], []
+    problems += wrong + unlisted
     if any(problem.path in tables.PARTS for problem in problems):
         raise ConfigurationError(problems)
     parts: dict[str, dict[str, dict[str, Any]]] = {}
@@ -131,15 +133,18 @@ def build_linkage(name: str, given: Values) -> LinkageSettings:
         for each in names[kind]:
             spec = table if kind != 'motions' else _case_table(values['inputs'])
             parts[kind][each], wrong = check_values(spec, below[each])
-            problems += [problem.below(each) for problem in wrong]
+            problems += [problem.below(each) for problem in wrong] if each not in bare else [
+                Problem(each, bare[each], f'one of the {kind} must be a mapping',
+                        f'write {each}: {{{table[0].name}: ...}}')]
     start, wrong = _start({**parts['inputs'], **parts['unknowns']},
-                          [body['angle'] for body in parts['bodies'].values()])
-    problems += wrong
+                          {body['angle'] for body in parts['bodies'].values()},
+                          {vector['variable'] for vector in parts['vectors'].values()})
+    problems += [problem for problem in wrong if problem.path.partition('.')[0] not in bare]
     problems += [
         Problem(f'{each}.length', vector['length'],
                 'exactly one of length and variable says how long a vector is')
         for each, vector in parts['vectors'].items()
-        if (vector['length'] is None) == (vector['variable'] is None)
+        if (vector['length'] is None) == (vector['variable'] is None) and each not in bare
         and not any(problem.path.startswith(f'{each}.') for problem in problems)]
     if problems:
         raise ConfigurationError(problems)
@@ -185,9 +190,27 @@ def _case(settings: LinkageSettings, name: str, given: Values) -> LinkageCase:
     return case
 
 
-def _start(variables: Mapping[str, Mapping[str, Any]], angles: list[str | None],
-           ) -> tuple[dict[str, float], list[Problem]]:
-    """Read the start; with a body whose angle is not known, nobody can tell the lengths."""
+def _take_unlisted(own: Values, taken: Collection[str]) -> tuple[dict[str, Any], list[Problem]]:
+    """Take out what describes a part that no list names, and say where it might be listed."""
+    described: dict[str, dict[str, Any]] = {}
+    for key, value in own.items():
+        head, _, rest = key.partition('.')
+        if rest and head not in taken and not is_of_every_node(key):
+            described.setdefault(head, {})[rest] = value
+    problems = []
+    for head, given in described.items():
+        kinds = [kind for kind, table in tables.PARTS.items()
+                 if set(given) <= {spec.name for spec in table}]
+        if kinds:  # else nobody can tell what it is meant to be
+            own = {key: value for key, value in own.items() if not key.startswith(f'{head}.')}
+            problems.append(Problem(head, given, 'is described but not listed',
+                                    f'list it in {" or in ".join(kinds)}'))
+    return dict(own), problems
+
+
+def _start(variables: Mapping[str, Mapping[str, Any]], angles: Collection[str | None],
+           lengths: Collection[str | None]) -> tuple[dict[str, float], list[Problem]]:
+    """Read the start; whether a variable that is neither exists, the linkage will tell."""
     start, problems = {}, []
     for name, values in variables.items():
         given = {key: values[key] for key in ('start', 'start_deg') if values[key] is not None}
@@ -196,7 +219,7 @@ def _start(variables: Mapping[str, Mapping[str, Any]], angles: list[str | None],
                 f'{name}.start', None if not given else list(given.values()),
                 'exactly one of start [m, rad] and start_deg names the branch'))
             continue
-        if 'start_deg' in given and name not in angles and None not in angles:
+        if 'start_deg' in given and name in lengths and name not in angles:
             problems.append(Problem(f'{name}.start_deg', given['start_deg'],
                                     'the variable is a length', 'write start: in m'))
         start[name] = given.get('start', 0.0) + given.get('start_deg', 0.0) * DEGREE

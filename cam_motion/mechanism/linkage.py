@@ -240,18 +240,19 @@ class Linkage:
             elif vector.length in self.angles:
                 yield Problem(f'{vector.name}.variable', vector.length,
                               'is the angle of a body: it cannot be a length too')
-        for name in self.variables:
-            if name not in lengths | self.angles:
-                yield Problem(name, None, 'is neither the angle of a body nor a length',
-                              'leave the variable out')
-
-    def _balance_problems(self) -> Iterator[Problem]:
-        """Find unknowns that the loops, sound by now, do not determine."""
-        if len(self.unknowns) != 2 * len(self.loops):
+        for kind, names in (('inputs', self.inputs), ('unknowns', self.unknowns)):
+            for name in names:
+                if name not in lengths | self.angles:
+                    yield Problem(kind, name, 'is neither the angle of a body nor the length of '
+                                  'a vector', 'name it there, or leave the variable out')
+        if self.loops and len(self.unknowns) != 2 * len(self.loops):
             yield Problem(
                 'unknowns', list(self.unknowns),
                 f'a loop determines two unknowns: {len(self.loops)} loops, '
                 f'{len(self.unknowns)} unknowns', 'make others inputs, or close another loop')
+
+    def _balance_problems(self) -> Iterator[Problem]:
+        """Find unknowns that the loops, sound by now, do not determine."""
         passed = {name.removeprefix('-') for loop in self.loops for name in loop.path}
         used = [vector for vector in self.vectors if vector.name in passed]
         bodies = {vector.body for vector in used}

@@ -90,7 +90,9 @@ def test_the_closing_words_of_the_document_on_the_velocities_hold(umbrella):
                                                      'sliding.duration'),
     ('sliding.h1', 2.5, 'sliding.h1'), ('sliding.h3', 2.5, 'sliding.h3'),
     ('sliding.h1_crank', 1.0, 'sliding.h1_crank'), ('h1', {'start_deg': 1.0}, 'h1.start_deg'),
-    ('turned', 1.0, 'turned'),
+    ('turned', 1.0, 'turned'), ('L2', None, 'L2.length'), ('link2', 'theta2', 'link2'),
+    ('rib', ['d1'], 'rib'), ('theta2', -16.3, 'theta2'), ('sliding', 5.0, 'sliding'),
+    ('what', {'angel': 'theta2'}, 'what.angel'),
 ])
 def test_a_problem_is_said_at_its_path(path, value, problem):
     with pytest.raises(ConfigurationError) as caught:
@@ -121,6 +123,46 @@ def test_loads_add_up_on_what_they_act_on():
     assert found.forces == {'D': 1.0 - 2.0j}
     assert found.torques == {'theta2': 5.0, 'h1': -3.0}
     assert found.loaded and not build_linkage('umbrella', flatten(GOOD)).loaded
+
+
+def problem_with(changes):
+    """Give the one problem of the umbrella with other parameters."""
+    with pytest.raises(ConfigurationError) as caught:
+        build_linkage('umbrella', flatten({**GOOD, **changes}))
+    problem, = caught.value.problems
+    return problem
+
+
+@pytest.mark.parametrize('key, lists, where', [
+    ('link2', {'bodies': ['link3', 'link5', 'link6']}, 'list it in bodies'),
+    ('L6', {'vectors': [name for name in GOOD['vectors'] if name != 'L6']}, 'list it in vectors'),
+    ('spare', {'spare': {'path': ['d1']}}, 'list it in loops or in points'),
+])
+def test_what_is_described_but_not_listed_is_said_to_be_so(key, lists, where):
+    problem = problem_with(lists)
+    assert (problem.path, problem.rule) == (key, 'is described but not listed')
+    assert problem.hint == where
+
+
+@pytest.mark.parametrize('key, hint', [
+    ('L2', 'write L2: {length: ...}'), ('link2', 'write link2: {angle: ...}'),
+    ('rib', 'write rib: {path: ...}'), ('theta2', 'write theta2: {start: ...}'),
+    ('both', 'write both: {duration: ...}')])
+@pytest.mark.parametrize('value', [None, 'abc', 1.0])
+def test_a_part_that_is_no_mapping_is_told_how_it_is_written(key, hint, value):
+    problem = problem_with({key: value})
+    assert (problem.path, problem.value, problem.hint) == (key, value, hint)
+    assert 'must be a mapping' in problem.rule
+
+
+def test_an_unknown_too_many_is_counted_and_not_taken_for_a_length():
+    with pytest.raises(ConfigurationError) as caught:
+        build_linkage('umbrella', flatten({
+            **GOOD, 'unknowns': [*GOOD['unknowns'], 'theta7'], 'theta7': {'start_deg': 1.0}}))
+    first, second = caught.value.problems
+    assert (first.path, first.value) == ('unknowns', 'theta7')
+    assert 'neither the angle of a body nor the length' in first.rule
+    assert '2 loops, 5 unknowns' in second.rule
 
 
 def test_problems_are_said_all_at_once():
