@@ -9,7 +9,8 @@
 Launch the umbrella as a line, every node as a process of its own, and look at it.
 
 `ros2 launch cam_motion umbrella.launch.py rviz:=true` shows its markers; with urdf:=true
-robot_state_publisher turns the joint states into frames (both from their own ROS packages). Any
+robot_state_publisher turns the joint states into frames, and RViz shows its URDF (both from their
+own ROS packages). Any
 machine file with a linkage will do: config:=my_machine.yaml linkage:=my_linkage.
 """
 
@@ -68,9 +69,10 @@ def viewers(context: LaunchContext) -> list[Node]:
                 given('config'), linkage)}],
             remappings=[('joint_states', f'{linkage}/joint_states')], output='screen'))
     if given('rviz') == 'true':
+        view = 'umbrella_urdf.rviz' if given('urdf') == 'true' else 'umbrella.rviz'
         nodes.append(Node(
             package='rviz2', executable='rviz2', namespace=namespace,
-            arguments=['-d', str(HERE / 'umbrella.rviz')],
+            arguments=['-d', str(HERE / view)],
             remappings=[('umbrella/markers', f'{linkage}/markers')], output='screen'))
     return nodes
 

@@ -157,16 +157,29 @@ def test_the_umbrella_is_the_same_line_with_viewers_on_demand(umbrella, root):
     assert {frames['namespace'], rviz['namespace']} == {'l1'}
     assert frames['remappings'] == [('joint_states', 'umbrella/joint_states')]
     assert 'name="theta2"' in frames['parameters'][0]['robot_description']
-    assert Path(rviz['arguments'][1]).is_file()
+    alone, = umbrella.viewers({**given, 'rviz': 'true'})
+    assert [Path(each['arguments'][1]).name for each in (rviz, alone.options)] == [
+        'umbrella_urdf.rviz', 'umbrella.rviz']
     with pytest.raises(RuntimeError, match='inputs'):
         umbrella.urdf_of(str(umbrella.CONFIG), 'no_such_linkage')
 
 
-def test_what_rviz_and_foxglove_show_are_the_topics_of_the_umbrella(root):
-    view = yaml.safe_load((root / 'launch' / 'umbrella.rviz').read_text())['Visualization Manager']
+@pytest.mark.parametrize('name, models', [('umbrella', []),
+                                          ('umbrella_urdf', ['RobotModel', 'TF'])])
+def test_rviz_shows_the_topics_of_the_umbrella_without_editing(root, name, models):
+    view = yaml.safe_load((root / 'launch' / f'{name}.rviz').read_text())['Visualization Manager']
     shown = {each['Class'].split('/')[-1]: each for each in view['Displays']}
+    assert list(shown) == ['Grid', 'MarkerArray', *models]
+    assert all(each['Enabled'] and each['Value'] for each in shown.values())
     assert shown['MarkerArray']['Topic']['Value'] == 'umbrella/markers'
+    # bars are drawn once: as markers, or as the URDF
+    assert shown['MarkerArray']['Namespaces']['links'] == (not models)
+    if models:
+        assert shown['RobotModel']['Description Topic']['Value'] == 'robot_description'
     assert view['Global Options']['Fixed Frame'] == 'world'
+
+
+def test_what_foxglove_shows_are_the_topics_of_the_umbrella(root):
     layout = json.loads((root / 'launch' / 'umbrella.foxglove.json').read_text())
     panels = layout['configById']
     assert panels['3D!umbrella']['topics'] == {'/umbrella/markers': {'visible': True}}
