@@ -10,8 +10,8 @@ Launch the umbrella as a line, every node as a process of its own, and look at i
 
 `ros2 launch cam_motion umbrella.launch.py rviz:=true` shows its markers; with urdf:=true
 robot_state_publisher turns the joint states into frames, and RViz shows its URDF (both from their
-own ROS packages). Any
-machine file with a linkage will do: config:=my_machine.yaml linkage:=my_linkage.
+own ROS packages). Any machine file with a linkage will do: config:=my_machine.yaml
+linkage:=my_linkage.
 """
 
 from pathlib import Path

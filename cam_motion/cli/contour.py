@@ -28,16 +28,16 @@ from cam_motion.cli.terminal import (
 )
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.cam_disc_config import build_cam_discs, CamDiscSettings
+from cam_motion.io.cam_disc_parameters import CAM_DISC
 from cam_motion.io.config import read_sections
 from cam_motion.io.contour import (
-    binding_text,
     bore_problems,
     contour_figures,
     ContourFigures,
     disc_problems,
-    figures_as_data,
 )
 from cam_motion.io.contour_csv import write_csv
+from cam_motion.io.contour_data import figures_as_data, needed, smallest_text
 from cam_motion.io.contour_dxf import write_dxf
 from cam_motion.io.machine import build_machine
 from cam_motion.motion.piecewise import Peak
@@ -66,7 +66,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('-o', '--output', metavar='PATH', type=Path,
                         help='directory for CSV, DXF and picture of each disc, or one file of one '
                              'disc: .csv, .dxf, .png, .svg, .pdf')
-    parser.add_argument('--tolerance', type=finite_number, metavar='X',
+    parser.add_argument('--tolerance', type=_tolerance, metavar='X',
                         help='largest distance of the written contour from the exact one [m]')
     parser.add_argument('--at', type=finite_number, metavar='DEG', default=0.0,
                         help='shaft angle at which the follower is drawn (default: 0)')
@@ -119,6 +119,15 @@ def run(arguments: argparse.Namespace) -> int:
     if problems := [each for found in wrong.values() for each in found]:
         raise ConfigurationError(problems)
     return 0
+
+
+def _tolerance(text: str) -> float:
+    """Read a tolerance by the rule of the machine file."""
+    value = finite_number(text)
+    spec = next(spec for spec in CAM_DISC if spec.name == 'tolerance')
+    if (problem := spec.check(value)) is not None:
+        raise argparse.ArgumentTypeError(f'{text!r}: {problem.rule}')
+    return value
 
 
 def _load(config: str, name: str | None) -> dict[str, CamDiscSettings]:
@@ -198,10 +207,16 @@ def _print(settings: CamDiscSettings, figures: ContourFigures,
         row(shown, name, number(value, 6), unit,
             '' if at is None else f'{number(at.at / DEGREE)} deg')
 
+    def need(name: str, peak: Peak | None, unit: str, factor: float = 1.0) -> None:
+        if peak is not None and needed(peak) is None:
+            row(shown, name, 'none', '', '')
+        elif peak is not None:
+            figure(name, peak.value / factor, unit, peak)
+
     _geometry(settings, figures, figure)
     if figures.force is not None:
         shown.add_section()
-        _forces(settings, figures, figure)
+        _forces(settings, figures, figure, need)
     out.print(shown)
     for name, text in _remarks(settings, figures):
         out.print(f'{name}: {text}')
@@ -219,19 +234,19 @@ def _geometry(settings: CamDiscSettings, figures: ContourFigures,
               figure: Callable[..., None]) -> None:
     disc = settings.disc
     figure('base circle, radius', disc.base_radius / MM, 'mm')
-    figure('largest radius of the contour', disc.farthest / MM, 'mm')
+    figure('farthest from the shaft', disc.farthest / MM, 'mm')
     if (pivot := disc.follower.pivot) is not None:
         figure('from the contour to the bearing', (abs(pivot) - disc.farthest) / MM, 'mm')
     back, out = figures.pressure_angles
     figure('greatest pressure angle', out.value / DEGREE, 'deg', out)
     figure('least pressure angle', back.value / DEGREE, 'deg', back)
     least, hollow = figures.least_radius, figures.hollow_radius
-    figure('least radius of the contour', least.value / MM, 'mm', least)
+    figure('least radius of curvature', least.value / MM, 'mm', least)
     if hollow is not None:
         figure('tightest hollow of the contour', hollow.value / MM, 'mm', hollow)
     if not disc.follower.is_flat:
         path = least.value + disc.follower.roller_radius
-        figure("least radius of the roller's path", path / MM, 'mm', least)
+        figure("the same of the roller's path", path / MM, 'mm', least)
     if figures.face is not None:
         low, high = figures.face
         figure('face touched from', low.value / MM, 'mm', low)
@@ -240,7 +255,7 @@ def _geometry(settings: CamDiscSettings, figures: ContourFigures,
 
 
 def _forces(settings: CamDiscSettings, figures: ContourFigures,
-            figure: Callable[..., None]) -> None:
+            figure: Callable[..., None], need: Callable[..., None]) -> None:
     force, swings = figures.force, settings.disc.follower.swings
     if force is None:
         return
@@ -253,24 +268,14 @@ def _forces(settings: CamDiscSettings, figures: ContourFigures,
                force.orbit_greatest)
     if force.lift_off is not None and not settings.groove:
         figure('lift-off speed', force.lift_off.value / RPM, 'rpm', force.lift_off)
-    if force.stiffness is not None:
-        figure(f'spring stiffness needed {speed}', force.stiffness.value,
-               'N m/rad' if swings else 'N/m', force.stiffness)
-    if force.preload is not None:
-        figure(f'preload needed {speed}', max(force.preload.value, 0.0) / (
-            DEGREE if swings else MM),
-               'deg' if swings else 'mm', force.preload)
+    need(f'spring stiffness needed {speed}', force.stiffness, 'N m/rad' if swings else 'N/m')
+    need(f'preload needed {speed}', force.preload, *(('deg', DEGREE) if swings else ('mm', MM)))
 
 
 def _remarks(settings: CamDiscSettings, figures: ContourFigures) -> list[tuple[str, str]]:
     found = []
-    smallest, offset, force = figures.smallest_base, figures.offset, figures.force
-    if smallest is None:
-        found.append(('smallest base circle', 'none keeps the limits'))
-    else:
-        found.append(('smallest base circle',
-                      f'{number(smallest.radius / MM, 8) if smallest.radius > 1e-9 else "0"} mm '
-                      f'({binding_text(smallest)})'))
+    offset, force = figures.offset, figures.force
+    found.append(('smallest base circle', smallest_text(figures.smallest_base)))
     if offset is not None:
         found.append(('for the limits of the pressure angle',
                       f'base circle {number(offset.base_radius / MM, 8)} mm with the offset '

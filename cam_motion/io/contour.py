@@ -5,22 +5,19 @@
 # writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
-"""The figures of a cam disc, what is wrong with it, and both as plain data."""
+"""The figures of a cam disc, and what is wrong with it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 import math
-from typing import Any
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import Values
 from cam_motion.io.cam_disc_config import build_cam_discs, CamDiscSettings
-from cam_motion.io.plain import finite
 from cam_motion.mechanism.cam_limits import (
     BaseCircle,
-    GEOMETRY,
     limit_problems,
     round_up,
     smallest_base_circle,
@@ -249,120 +246,14 @@ def disc_text(settings: CamDiscSettings) -> str:
     Returns
     -------
     str
-        Pressure angle, least radius of the contour and lift-off speed.
+        Pressure angle, least radius of curvature and lift-off speed.
 
     """
     disc, force = settings.disc, settings.force
     back, out = (peak.value / DEGREE for peak in disc.pressure_angles)
     least = disc.least_contour_radius
-    text = (f'pressure angle {back:.4g} to {out:.4g} deg, least radius of the contour '
+    text = (f'pressure angle {back:.4g} to {out:.4g} deg, least radius of curvature '
             f'{least.value:.4g} m')
     if force is None or settings.groove or force.lift_off is None:
         return text
     return f'{text}, lift-off at {force.lift_off.value / RPM:.5g} rpm'
-
-
-def disc_as_data(settings: CamDiscSettings) -> dict[str, Any]:
-    """
-    Turn the same into plain data.
-
-    Parameters
-    ----------
-    settings : CamDiscSettings
-        The disc.
-
-    Returns
-    -------
-    dict[str, Any]
-        What ``cam_motion check --json`` prints of each disc.
-
-    """
-    disc, force = settings.disc, settings.force
-    back, out = (peak.value / DEGREE for peak in disc.pressure_angles)
-    lift_off = None if force is None or settings.groove else force.lift_off
-    return {'axis': settings.axis, 'pressure_angles_deg': [back, out],
-            'least_radius': disc.least_contour_radius.value, 'undercuts': disc.undercuts,
-            'lift_off_rpm': None if lift_off is None else lift_off.value / RPM}
-
-
-def figures_as_data(settings: CamDiscSettings, figures: ContourFigures) -> dict[str, Any]:
-    """
-    Turn the figures of a cam disc into plain data.
-
-    Parameters
-    ----------
-    settings : CamDiscSettings
-        The disc.
-    figures : ContourFigures
-        Its figures.
-
-    Returns
-    -------
-    dict[str, Any]
-        What ``cam_motion contour --json`` prints of each disc; shaft and pressure angles in
-        degrees, the rest in SI.
-
-    """
-    disc = settings.disc
-    back, out = figures.pressure_angles
-    data: dict[str, Any] = {
-        'axis': settings.axis, 'follower': settings.kind,
-        'direction': 'counterclockwise' if disc.sense > 0 else 'clockwise',
-        'base_radius': disc.base_radius,
-        'roller_radius': None if disc.follower.is_flat else disc.follower.roller_radius,
-        'farthest': disc.farthest,
-        'pressure_angle_deg': {
-            'greatest': out.value / DEGREE, 'at_deg': out.at / DEGREE,
-            'least': back.value / DEGREE, 'least_at_deg': back.at / DEGREE},
-        'least_radius': _peak(figures.least_radius),
-        'hollow_radius': _peak(figures.hollow_radius),
-        'undercuts': disc.undercuts,
-        'smallest_base_radius': None if figures.smallest_base is None else {
-            'value': figures.smallest_base.radius, 'binding': figures.smallest_base.binding,
-            'at_deg': figures.smallest_base.at / DEGREE},
-        'best_offset': None if figures.offset is None else {
-            'offset': figures.offset.offset, 'base_radius': figures.offset.base_radius},
-    }
-    pivot = disc.follower.pivot
-    if pivot is not None:
-        data['bearing_clearance'] = abs(pivot) - disc.farthest
-    if figures.face is not None:
-        low, high = figures.face
-        data['face'] = {'from': low.value, 'to': high.value, 'width': high.value - low.value}
-    force = figures.force
-    if force is not None:
-        lift_off = force.lift_off
-        data['contact_force'] = {
-            'speed_rpm': settings.speed / RPM, 'least': _peak(force.least),
-            'greatest': _peak(force.greatest),
-            'lift_off_rpm': None if lift_off is None else lift_off.value / RPM,
-            'lift_off_at_deg': None if lift_off is None else lift_off.at / DEGREE,
-            'stiffness_needed': _peak(force.stiffness), 'preload_needed': _peak(force.preload),
-            'least_on_orbit': _peak(force.orbit_least),
-            'greatest_on_orbit': _peak(force.orbit_greatest)}
-    return data
-
-
-def binding_text(circle: BaseCircle) -> str:
-    """
-    Say what binds a smallest base circle.
-
-    Parameters
-    ----------
-    circle : BaseCircle
-        The circle.
-
-    Returns
-    -------
-    str
-        The limit and the shaft angle.
-
-    """
-    if circle.binding == GEOMETRY:
-        return 'no limit binds it'
-    return f'{circle.binding} at {circle.at / DEGREE:.6g} deg'
-
-
-def _peak(peak: Peak | None) -> dict[str, float | None] | None:
-    return None if peak is None else {
-        'value': finite(peak.value), 'at_deg': peak.at / DEGREE}

@@ -13,7 +13,7 @@ from typing import Any
 
 from cam_motion.drive.servo_cycle import LimitFigures
 from cam_motion.errors import Problem
-from cam_motion.io.contour import disc_as_data
+from cam_motion.io.contour_data import disc_as_data
 from cam_motion.io.interlocks import JudgedInterlock
 from cam_motion.io.linkage_data import range_as_data
 from cam_motion.io.plain import finite, plain

@@ -101,12 +101,34 @@ def test_check_tells_of_the_discs(cam_motion, read_json):
     (('-o', 'cam.dxf'), 'one file holds one disc'),
     (('press_cam', '-o', 'cam.step'), 'must be a directory, or end in .csv'),
     (('press_cam', '-o', 'cam.csv', '--tolerance', '0'), 'tolerance'),
+    (('--tolerance', '-1'), 'tolerance'), (('--tolerance', '1'), 'at most 0.01'),
 ])
 def test_wrong_arguments_are_refused(cam_motion, tmp_path, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     done = cam_motion('contour', DISCS, *arguments)
     assert done.returncode == 2 and said in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_nothing_limits_and_nobody_needs_is_said_so(cam_motion, read_json):
+    drive = CONFIG / 'cam_press_drive.yaml'
+    said = cam_motion('contour', drive).stdout
+    assert 'smallest base circle: not limited' in said
+    preload, = (line for line in said.splitlines() if 'preload needed at 400 rpm' in line)
+    assert preload.split()[-1] == 'none'
+    stiffness, = (line for line in said.splitlines() if 'stiffness needed at 400 rpm' in line)
+    assert '4006.62' in stiffness
+    cam = read_json(cam_motion('contour', drive, '--json').stdout)['press_drive']
+    assert cam['smallest_base_radius']['value'] == 0.0
+    assert cam['contact_force']['preload_needed'] == {'value': 0.0, 'at_deg': None}
+    assert cam['contact_force']['stiffness_needed']['value'] == pytest.approx(4006.62, abs=0.01)
+
+
+def test_radii_of_curvature_and_from_the_shaft_have_names_of_their_own(cam_motion):
+    said = cam_motion('contour', DISCS, 'press_cam').stdout
+    assert 'least radius of curvature' in said and 'farthest from the shaft' in said
+    assert 'radius of the contour' not in said
+    assert 'least radius of curvature' in cam_motion('check', DISCS).stdout
 
 
 def test_a_machine_without_discs_is_told_so(cam_motion):

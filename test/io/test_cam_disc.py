@@ -13,13 +13,9 @@ from pathlib import Path
 from cam_motion.errors import CamMotionError, ConfigurationError
 from cam_motion.io.cam_disc_config import build_cam_discs
 from cam_motion.io.config import parse_sections, read_sections
-from cam_motion.io.contour import (
-    check_discs,
-    contour_figures,
-    disc_problems,
-    figures_as_data,
-)
+from cam_motion.io.contour import check_discs, contour_figures, disc_problems
 from cam_motion.io.contour_csv import COLUMNS, write_csv
+from cam_motion.io.contour_data import figures_as_data
 from cam_motion.io.contour_dxf import write_dxf
 from cam_motion.io.plain import to_json
 from cam_motion.io.plots import contour_figure
