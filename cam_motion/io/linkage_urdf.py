@@ -26,7 +26,8 @@ from cam_motion.mechanism.outline import Outline, Piece
 
 # Of the size of the linkage: thickness of bars, diameter of joints, length of sliding blocks.
 _BAR, _JOINT, _BLOCK = 0.02, 0.035, 0.06
-_FAR = 100.0  # limits of slides, of that size: URDF asks for some
+_FAR = 100.0  # of that size: an input that no loop holds back
+_EFFORT, _VELOCITY = 1e6, 1e3  # N and m/s that no slide has: URDF asks for some
 _ROUNDING = 12  # decimals [m]: what is left is rounding
 _COLOURS = ('0.35 0.35 0.35 1', '0 0.45 0.7 1', '0 0.62 0.45 1', '0.8 0.47 0.65 1',
             '0.9 0.62 0 1', '0.34 0.71 0.91 1')
@@ -46,7 +47,9 @@ def linkage_urdf(settings: LinkageSettings) -> str:
     -------
     str
         The XML: its root is the link ``frame_id``, its joints bear the names of the published
-        joint states, and each piece, slide and point is a link of its own name.
+        joint states, and each piece, slide and point is a link of its own name. Limits of slides
+        are the ranges of inputs, with the other inputs at the start, and else how far all lengths
+        reach together.
 
     """
     return _Robot(settings).text
@@ -57,7 +60,16 @@ class _Robot:
 
     def __init__(self, settings: LinkageSettings) -> None:
         outline = Outline(settings.assembly)
-        self._size = settings.assembly.equations.size
+        assembly = settings.assembly
+        self._size = assembly.equations.size
+        self._ranges = {name: assembly.range_of(name) for name in assembly.linkage.inputs
+                        if name not in assembly.linkage.angles}
+        # nothing is farther away than all lengths together, each at its longest; an unknown one is
+        # no longer than all others of its loop
+        lengths = [vector.length for vector in assembly.linkage.vectors]
+        known = sum(each if not isinstance(each, str) else self._longest(each)
+                    for each in lengths if each not in assembly.linkage.unknowns)
+        self._reach = known * (1 + sum(each in assembly.linkage.unknowns for each in lengths))
         self._repeated = repeated_joints(outline)
         self._robot = Xml.Element('robot', name=settings.name)
         root = settings.values['frame_id']
@@ -66,6 +78,16 @@ class _Robot:
         Xml.indent(self._robot)
         self.text = ('<?xml version="1.0"?>\n' + Xml.tostring(self._robot, encoding='unicode')
                      + '\n')
+
+    def _longest(self, variable: str) -> float:
+        found = self._ranges[variable]
+        return max((abs(end) for end in (found.low, found.high) if math.isfinite(end)),
+                   default=_FAR * self._size)
+
+    def _bounds(self, variable: str) -> tuple[float, float]:
+        found = self._ranges.get(variable)
+        low, high = (found.low, found.high) if found else (-math.inf, math.inf)
+        return max(low, -self._reach), min(high, self._reach)
 
     def _piece(self, piece: Piece, root: str, colour: str) -> None:
         link = self._hang(piece, root) if piece.angle else self._link(root)
@@ -84,7 +106,7 @@ class _Robot:
             self._visual(block, 'box', 0.0, angle, tuple(
                 share * self._size for share in (_BLOCK, _JOINT, _JOINT)), _COLOURS[0], 'slides')
             self._joint(self._joint_of(slide.name, slide.variable), 'prismatic', name, slide.name,
-                        slide.start, slide.along)
+                        slide.start, slide.along, slide.variable)
             for point in slide.marks:
                 self._link_at(slide.name, point, 0.0)
 
@@ -113,7 +135,7 @@ class _Robot:
         self._joint(f'{name}_fixed', 'fixed', parent, name, place)
 
     def _joint(self, name: str, kind: str, parent: str, child: str, place: complex,
-               along: complex | None = None) -> None:
+               along: complex | None = None, variable: str = '') -> None:
         joint = Xml.SubElement(self._robot, 'joint', name=name, type=kind)
         Xml.SubElement(joint, 'origin', xyz=_numbers((place.real, place.imag, 0.0)), rpy='0 0 0')
         Xml.SubElement(joint, 'parent', link=parent)
@@ -122,8 +144,9 @@ class _Robot:
             Xml.SubElement(joint, 'axis', xyz='0 0 1')
         if along is not None:
             Xml.SubElement(joint, 'axis', xyz=_numbers((along.real, along.imag, 0.0)))
-            far = _numbers((_FAR * self._size,))
-            Xml.SubElement(joint, 'limit', lower=f'-{far}', upper=far, effort='0', velocity='0')
+            low, high = self._bounds(variable)
+            Xml.SubElement(joint, 'limit', lower=_numbers((low,)), upper=_numbers((high,)),
+                           effort=_numbers((_EFFORT,)), velocity=_numbers((_VELOCITY,)))
 
     def _visual(self, link: Xml.Element, shape: str, place: complex, angle: float,
                 size: Sequence[float], colour: str, material: str) -> None:

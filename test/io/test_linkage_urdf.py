@@ -119,7 +119,50 @@ def test_every_visual_can_be_drawn_and_limits_are_given(settings):
     for joint in robot.iter('joint'):
         if joint.get('type') == 'prismatic':
             limit = joint.find('limit')
-            assert float(limit.get('lower')) < 0.0 < float(limit.get('upper'))
+            assert float(limit.get('lower')) < float(limit.get('upper'))
+            assert float(limit.get('effort')) > 0.0 < float(limit.get('velocity'))
+
+
+def limits(robot):
+    """Read the limits of the slides, by joint."""
+    return {joint.get('name'): (float(joint.find('limit').get('lower')),
+                                float(joint.find('limit').get('upper')))
+            for joint in robot.iter('joint') if joint.find('limit') is not None}
+
+
+def test_limits_of_inputs_are_their_ranges():
+    settings = build_linkage('umbrella', read_sections(CONFIGS / 'umbrella.yaml')['umbrella'])
+    found = limits(Xml.fromstring(linkage_urdf(settings).encode()))
+    assert found['h1'] == pytest.approx((0.2, 2.2), abs=1e-7)
+    assert found['h2'] == pytest.approx((math.sqrt(0.08), math.sqrt(2.24)), abs=1e-7)
+
+
+def test_an_input_that_nothing_stops_has_wide_limits():
+    free = {**PANTOGRAPH, 'inputs': ['s', 'free'], 'free.start': 0.1,
+            'vectors': [*PANTOGRAPH['vectors'], 'beside'], 'beside.variable': 'free',
+            'points': [*PANTOGRAPH['points'], 'X'], 'X.path': ['beside']}
+    found = limits(Xml.fromstring(linkage_urdf(build_linkage('free', free)).encode()))
+    low, high = found['free']
+    assert low < -10.0 and high > 10.0
+    assert found['s'] == pytest.approx((0.0, 0.8), abs=1e-5)
+
+
+def test_no_slide_leaves_its_limits(settings):
+    found = limits(Xml.fromstring(linkage_urdf(settings).encode()))
+    assembly = settings.assembly
+    joints = LinkageJoints(assembly, Outline(assembly), {})
+    start, size = assembly.start, assembly.equations.size
+    ranges = {name: assembly.range_of(name) for name in assembly.linkage.inputs}
+    for share in np.linspace(0.02, 0.98, 13):
+        pose = assembly.at({
+            name: start[name] + math.tau * share if math.isinf(each.high) else
+            each.low + share * (each.high - each.low) for name, each in ranges.items()})
+        still, gain = np.zeros(len(pose.values)), np.zeros((
+            len(assembly.linkage.unknowns), len(assembly.linkage.inputs)))
+        positions, _, _ = joints.at(pose.values, still, gain)
+        for name, value in zip(joints.names, positions):
+            low, high = found.get(name, (-math.inf, math.inf))
+            assert low <= value <= high and (name not in found or high - low < 30.0 * size)
 
 
 def test_what_moves_by_the_same_variable_has_a_joint_of_its_own():
