@@ -27,8 +27,9 @@ from cam_motion.cli.terminal import (
 )
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import advice as advising
-from cam_motion.io.advice import Advice, Question
+from cam_motion.io.advice import Advice
 from cam_motion.io.advice_data import advice_as_data
+from cam_motion.io.advice_movement import movement, Question
 from cam_motion.io.advice_questions import questions
 from cam_motion.io.config import read_sections
 from cam_motion.io.filter_advice import (
@@ -43,8 +44,10 @@ from cam_motion.io.shaping_parameters import SHAPING
 from cam_motion.io.summary import turning_drive, with_speed
 from cam_motion.motion.advice import BALANCED, Candidate, CRITERIA
 from cam_motion.motion.laws import Boundary, LAWS
+from cam_motion.motion.laws.fitted import told_to
 from cam_motion.motion.shaped_profile import ShapedProfile
 from cam_motion.motion.shaping_effect import ERRORS, Load
+from cam_motion.motion.spline import EndState
 from cam_motion.units import rate_text, RPM, TURN
 
 _WHAT_SWINGS = ('frequency_hz', 'damping', 'container_width', 'container_radius', 'fill_height')
@@ -78,8 +81,12 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         alone.add_argument(f'--{name}', type=finite_number, metavar='X', help=meaning)
     alone.add_argument('--unit', default='m', help='its unit (default: m)')
     for name in ('start', 'end'):
-        alone.add_argument(f'--{name}', choices=sorted(_ENDS), default='rest',
-                           help=f'what it joins at its {name} (default: rest)')
+        alone.add_argument(f'--{name}', choices=sorted(_ENDS),
+                           help=f'what it joins at its {name} (default: what the two below say, '
+                                'else rest)')
+        for order, what in enumerate(('velocity', 'acceleration'), start=1):
+            alone.add_argument(f'--{name}-{what}', type=finite_number, metavar='X',
+                               help=f'{what} of its neighbour there [unit/s{"²" * (order - 1)}]')
     add_speed(parser)
     swings = parser.add_argument_group('what swings behind the axis')
     for name, meaning in (
@@ -147,7 +154,11 @@ def run(arguments: argparse.Namespace) -> int:
 def _questions(arguments: argparse.Namespace) -> list[Question]:
     load, problems = _load(arguments)
     alone = {'--lift': arguments.lift, '--span-deg': arguments.span_deg}
+    at_ends = {f'--{name}': getattr(arguments, name.replace('-', '_')) for name in (
+        'start', 'start-velocity', 'start-acceleration', 'end', 'end-velocity',
+        'end-acceleration')}
     if arguments.config is not None:
+        alone |= at_ends
         problems += [Problem(name, value, 'describes a movement on its own',
                              'leave it out, or the machine file')
                      for name, value in alone.items() if value is not None]
@@ -167,9 +178,13 @@ def _questions(arguments: argparse.Namespace) -> list[Question]:
         if (value := alone[name]) and not 0.0 < value <= (most or value)]
     if problems:
         raise ConfigurationError(problems)
-    return [advising.movement(
-        arguments.lift, arguments.span_deg, arguments.speed_cpm,
-        (_ENDS[arguments.start], _ENDS[arguments.end]), load, arguments.unit)]
+    states = [EndState(*(at_ends[f'--{name}-{what}'] or 0.0
+                         for what in ('velocity', 'acceleration'))) for name in ('start', 'end')]
+    kinds = [Boundary.of(*state, 1.0, 1.0) if at_ends[f'--{name}'] is None
+             else _ENDS[at_ends[f'--{name}']] for name, state in zip(('start', 'end'), states)]
+    return [movement(
+        arguments.lift, arguments.span_deg, arguments.speed_cpm, (kinds[0], kinds[1]), load,
+        arguments.unit, *states)]
 
 
 def _load(arguments: argparse.Namespace) -> tuple[Load | None, list[Problem]]:
@@ -222,8 +237,10 @@ def _print(advice: Advice) -> None:
             head = (str(place) if ranked else '', found.law.name + ' *' * found.configured)
             score = f'{number(each.score, 4)}  ' * (ranked and advice.by == BALANCED)
             same = f'; the same as {", ".join(found.same_as)}' if found.same_as else ''
+            parameters = '' if found.configured else told_to(found.law)
+            told = f'; with {parameters}' if parameters else ''
             figures = [number(found.figures[key], 4) for _, key in columns]
-            why = score + each.reason + same
+            why = score + each.reason + told + same
             row(out, *head, *figures, *([why] if wide else []))
             row(reasons, *head, why)
         out.add_section()
@@ -237,12 +254,15 @@ def _print(advice: Advice) -> None:
         refusals.setdefault(refused.refusal, []).append(
             refused.law.name + ' (now)' * refused.configured)
     for text, names in refusals.items():
-        screen.print(f'not {", ".join(names)}: {text}', soft_wrap=True)
+        screen.print(f'not {", ".join(names)}: {text}')
     screen.print()
 
 
 def _caption(advice: Advice) -> str:
     said = ['Per cents: against the least among the numbered laws. * the law it has now.']
+    if beside := advice.question.names_beside:
+        said.append(f'The figures cover {", ".join(beside)} as well: shape and peaks there follow '
+                    'from this law.')
     if advice.stepping:
         said.append('Without a number: the acceleration steps at an end, or within.')
     tunable = [each.candidate.law.name for each in advice.ranking[:3]
@@ -282,7 +302,7 @@ def _print_filters(question: Question, law: str, filters: list[FilterFigures]) -
     console().print(out)
     for each in filters:
         if each.refusal:
-            console().print(f'not {each.kind}: {each.refusal}', soft_wrap=True)
+            console().print(f'not {each.kind}: {each.refusal}')
     console().print()
 
 

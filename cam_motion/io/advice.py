@@ -17,6 +17,7 @@ import math
 from cam_motion.drive.cycle import cycle_figures
 from cam_motion.drive.inverse import FollowerDrive
 from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io.advice_movement import Question
 from cam_motion.motion.advice import (
     BALANCED,
     Candidate,
@@ -26,109 +27,20 @@ from cam_motion.motion.advice import (
     Ranked,
     ranked,
 )
-from cam_motion.motion.laws import Boundary, LAWS, laws_between, make_law, MotionLaw
-from cam_motion.motion.limits import Limits, QUANTITIES
+from cam_motion.motion.laws import LAWS, make_law, MotionLaw
+from cam_motion.motion.laws.fitted import fitted, misses
+from cam_motion.motion.limits import QUANTITIES
 from cam_motion.motion.piecewise import Piecewise
 from cam_motion.motion.profile import CamProfile
-from cam_motion.motion.segment import Segment
 from cam_motion.motion.shaped_profile import movements, ShapedProfile
 from cam_motion.motion.shaping_effect import Load, MovementEffect
 from cam_motion.motion.superposition import window
 from cam_motion.motion.vibration import residual_amplitude
+from cam_motion.runtime.planning import TransitionError
 from cam_motion.units import DEGREE, rate_text, RPM, TURN
 
 _ROUNDING = 1e-9
 _BY_NEIGHBOURS = 'auto'  # the one law that needs nothing but its neighbours
-_MOVING = (Boundary.CONSTANT_VELOCITY, Boundary.MOTION)
-
-
-@dataclass(frozen=True)
-class Question:
-    """
-    A movement to advise upon.
-
-    Attributes
-    ----------
-    name : str
-        What it is called: ``feeder.feed``.
-    unit : str
-        Unit of its axis.
-    lift : float
-        What it moves by, the scale of the cam included, in the unit of the axis.
-    start_deg, end_deg : float
-        Where on the cam [deg].
-    speed : float
-        Speed of the cam [rad/s]; above 0.
-    ends : tuple[Boundary, Boundary]
-        What its neighbours do where they meet it.
-    profile : CamProfile | None
-        The cam; None for a movement on its own that does not go from rest to rest.
-    index : int
-        Place of its segment among those of the cam.
-    scale : float
-        What the lifts of the cam are multiplied by [-].
-    shaft_speed : float
-        Speed of the shaft [rad/s]; above 0.
-    limits : Limits
-        Limits of the axis.
-    load : Load | None
-        What swings behind the axis.
-    drive : FollowerDrive | None
-        What moves it.
-    configured : MotionLaw | None
-        The law that it has now.
-
-    """
-
-    name: str
-    unit: str
-    lift: float
-    start_deg: float
-    end_deg: float
-    speed: float
-    ends: tuple[Boundary, Boundary]
-    profile: CamProfile | None
-    shaft_speed: float
-    index: int = 0
-    scale: float = 1.0
-    limits: Limits = Limits()
-    load: Load | None = None
-    drive: FollowerDrive | None = None
-    configured: MotionLaw | None = None
-
-    @property
-    def duration(self) -> float:
-        """How long it lasts [s]."""
-        return (self.end_deg - self.start_deg) * DEGREE / self.speed
-
-    def cam_with(self, law: MotionLaw) -> CamProfile | None:
-        """
-        Put a law into the movement, the rest of the cam as it is.
-
-        Parameters
-        ----------
-        law : MotionLaw
-            The law.
-
-        Returns
-        -------
-        CamProfile | None
-            The cam, shaped if it is; None for a movement that has no cam.
-
-        Raises
-        ------
-        ConfigurationError
-            When the law does not fit its neighbours, or the filter.
-
-        """
-        cam = self.profile
-        if cam is None or law is self.configured:
-            return cam
-        bare = cam.original if isinstance(cam, ShapedProfile) else cam
-        segments = list(bare.segments)
-        segments[self.index] = replace(segments[self.index], law=law)
-        changed = CamProfile(segments, bare.accumulate)
-        return cam.shaping(changed) if isinstance(cam, ShapedProfile) else changed
 
 
 @dataclass(frozen=True)
@@ -157,43 +69,6 @@ class Advice:
     ranking: tuple[Ranked, ...]
     stepping: tuple[Ranked, ...]
     refused: tuple[Candidate, ...]
-
-
-def movement(lift: float, span_deg: float, speed_cpm: float,
-             ends: tuple[Boundary, Boundary] = (Boundary.REST, Boundary.REST),
-             load: Load | None = None, unit: str = 'm') -> Question:
-    """
-    Describe a movement on its own.
-
-    Parameters
-    ----------
-    lift : float
-        What it moves by, in its unit.
-    span_deg : float
-        Over which angle [deg], above 0 and at most 360.
-    speed_cpm : float
-        Speed of the cam [cycles/min]; above 0.
-    ends : tuple[Boundary, Boundary]
-        What is before and behind it.
-    load : Load | None
-        What swings behind it.
-    unit : str
-        Its unit.
-
-    Returns
-    -------
-    Question
-        The movement.
-
-    """
-    profile = None
-    if ends == (Boundary.REST, Boundary.REST):
-        segments = [Segment('movement', make_law('polynomial_345'), span_deg, lift)]
-        if span_deg < 360.0:
-            segments.append(Segment('dwell', make_law('dwell'), 360.0))
-        profile = CamProfile(segments, accumulate=True)
-    speed = speed_cpm * RPM
-    return Question('movement', unit, lift, 0.0, span_deg, speed, ends, profile, speed, load=load)
 
 
 def advise(question: Question, by: str = BALANCED, allow_steps: bool = False) -> Advice:
@@ -243,20 +118,38 @@ def _candidates(question: Question) -> Iterator[Candidate]:
     now = question.configured
     if now is not None:
         yield _tried(question, now)
-    for name, law in LAWS.items():
+    # the one that needs no numbers first: others with its curve are the same as it
+    for name in sorted(LAWS, key=lambda name: name != _BY_NEIGHBOURS):
         if name == 'dwell':
             continue
         try:
-            made = _default(name)
+            made = _law_for(question, name)
         except ConfigurationError as error:
             yield Candidate(MotionLaw(name, {}, make_law('dwell').curve),
                             refusal=f'needs parameters: {error.problems[0].path}')
             continue
-        by_neighbours = name == _BY_NEIGHBOURS and question.profile is not None
-        if law.any_ends and not by_neighbours and made.ends != question.ends:
-            yield Candidate(made, refusal='takes its shape from conditions that it is given')
+        if made is None:
+            yield Candidate(_default(name), refusal='takes its shape from conditions that it is '
+                                                    'given')
         elif now is None or (now.name, now.parameters) != (name, made.parameters):
             yield _tried(question, made)
+
+
+def _law_for(question: Question, name: str) -> MotionLaw | None:
+    """Make a law that begins and ends as its neighbours do; None where only a user could."""
+    made, asked = _default(name), question.conditions
+    if name == _BY_NEIGHBOURS:
+        if question.profile is not None or made.ends == question.ends:
+            return made
+        if asked is None or None in (*asked[0], *asked[1]):
+            return None
+        return MotionLaw(name, made.parameters, make_law('polynomial', **{
+            f'{end}_{quantity}': value for end, condition in zip(('start', 'end'), asked)
+            for quantity, value in condition._asdict().items()}).curve)
+    fitting = None if asked is None else fitted(name, asked)
+    if fitting is None and LAWS[name].any_ends and made.ends != question.ends:
+        return None
+    return fitting or made
 
 
 @cache
@@ -268,42 +161,72 @@ def _default(name: str) -> MotionLaw:
 def _tried(question: Question, law: MotionLaw) -> Candidate:
     """Put a law into the movement and look at it."""
     configured = law is question.configured
-    low, high = question.start_deg * DEGREE, question.end_deg * DEGREE
-    start, end = question.ends
+    asked = question.conditions
+    cam = None
     if question.profile is None:
-        if any((has in _MOVING) != (needed in _MOVING)
-               for has, needed in zip(law.ends, question.ends)):
-            return Candidate(law, refusal=ends_text(law, start, end))
-        cam, curve = None, law.curve.scaled(low, high, question.lift)
-        legal = law.name in laws_between(start, end) and not curve.jumps(2)
+        assert asked is not None
+        wrong = _velocity_text(law, question)
+        if wrong:
+            return Candidate(law, refusal=wrong)
+        low, high = question.start_deg * DEGREE, question.end_deg * DEGREE
+        curve = wide = law.curve.scaled(low, high, question.lift)
+        legal = not curve.jumps(2) and not any(misses(law, asked, 2)) and all(
+            condition.acceleration is not None or has is kind
+            for condition, has, kind in zip(asked, law.ends, question.ends))
     else:
         try:
             cam = question.cam_with(law)
+            if cam is not None and question.layout is not None:
+                replace(question.layout, cams={
+                    **question.layout.cams, question.cam: cam}).check_range(question.limits)
+        except TransitionError as error:
+            return Candidate(law, configured=configured, refusal=str(error))
         except ConfigurationError as error:
-            reason = ends_text(law, start, end) or '; '.join(
-                dict.fromkeys(problem.rule for problem in error.problems))
+            reason = ends_text(law, *question.ends) or _velocity_text(law, question) or (
+                '; '.join(dict.fromkeys(problem.rule for problem in error.problems)))
             return Candidate(law, configured=configured, refusal=reason)
         assert cam is not None
-        curve = _stretch(cam, question.index)
-        curve = curve.scaled(curve.start, curve.end, question.scale)
-        steps = [jump.at for jump in cam.jumps(2)]
-        legal = not any(low - _ROUNDING <= at + turn <= high + _ROUNDING
-                        for at in steps for turn in (0.0, TURN))
-    figures = _figures(question, law, curve, legal)
-    if not configured and figures['peak_velocity'] == 0.0:
+        curve, wide = (
+            part.scaled(part.start, part.end, question.scale) for part in (
+                _stretch(cam, (question.index,)), _stretch(cam, question.covered)))
+        legal = not _steps(question, cam)
+    figures = _figures(question, law, wide, legal)
+    if not configured and curve.peak(1).value == 0.0:
         return Candidate(law, refusal='would stand still: the lift is 0')
     if question.load is not None:
         figures['residual'] = _residual(question, cam, curve, question.load)
     if question.drive is not None and cam is not None:
         figures |= _torques(question, cam, question.drive)
-    return Candidate(law, figures, curve, configured, legal, _broken_limit(question, figures))
+    return Candidate(law, figures, curve, configured, legal,
+                     _broken_limit(question, figures, cam, wide))
+
+
+def _velocity_text(law: MotionLaw, question: Question) -> str:
+    """Say at which end the velocity of a law is not that of its neighbour; empty if at none."""
+    kinds = ends_text(law, *question.ends)
+    if question.conditions is None or not any(misses(law, question.conditions, 1)):
+        return ''
+    if any(has.moves != needed.moves for has, needed in zip(law.ends, question.ends)):
+        return kinds
+    ends = zip(('starts', 'ends'), misses(law, question.conditions, 1), law.curve.end_values(1),
+               question.conditions)
+    return ' and '.join(
+        f'{verb} at {has:.5g} lifts per span, its neighbour there has {needed.velocity:.5g}'
+        for verb, wrong, has, needed in ends if wrong)
+
+
+def _steps(question: Question, cam: CamProfile) -> bool:
+    """Tell whether the acceleration steps within a movement or where it meets its neighbours."""
+    low, high = question.start_deg * DEGREE, question.end_deg * DEGREE
+    return any(low - _ROUNDING <= jump.at + turn <= high + _ROUNDING
+               for jump in cam.jumps(2) for turn in (0.0, TURN))
 
 
 def _figures(question: Question, law: MotionLaw, curve: Piecewise, legal: bool,
              ) -> dict[str, float]:
     """Take the figures of a movement, from the coefficients of its law where these hold."""
-    if LAWS[law.name].any_ends or isinstance(question.profile, ShapedProfile) or any(
-            end in _MOVING for end in law.ends):
+    if LAWS[law.name].any_ends or isinstance(question.profile, ShapedProfile) or (
+            len(question.covered) > 1 or any(end.moves for end in law.ends)):
         return figures_of(curve, question.speed, not legal)
     found, lift, time = law.coefficients, abs(question.lift), question.duration
     return {
@@ -313,17 +236,16 @@ def _figures(question: Question, law: MotionLaw, curve: Piecewise, legal: bool,
         'rms_acceleration': found.rms_acceleration * lift / time ** 2}
 
 
-def _stretch(cam: CamProfile, index: int) -> Piecewise:
-    """Cut the movement out of its cam, with what a filter adds to it in the dwell behind."""
-    part = cam.parts[index]
-    if not isinstance(cam, ShapedProfile) or cam.fit:
-        return part
-    behind = cam.segments[(index + 1) % len(cam.segments)]
-    if not behind.is_dwell:
-        return part
-    dwell = cam.parts[(index + 1) % len(cam.segments)]
-    late = min(cam.filter.duration * cam.speed, dwell.end - dwell.start)
-    return window(cam.curve, cam.advance, part.start, part.end + late)
+def _stretch(cam: CamProfile, covered: tuple[int, ...]) -> Piecewise:
+    """Cut segments out of their cam, with what a filter adds to them in the dwell behind."""
+    first, last = (cam.parts[place] for place in (covered[0], covered[-1]))
+    end = last.end if last.end > first.start else last.end + TURN
+    place = (covered[-1] + 1) % len(cam.segments)
+    if isinstance(cam, ShapedProfile) and not cam.fit and cam.segments[place].is_dwell:
+        dwell = cam.parts[place]
+        late = min(cam.filter.duration * cam.speed, dwell.end - dwell.start)
+        return window(cam.curve, cam.advance, first.start, end + late)
+    return first if len(covered) == 1 else window(cam.curve, cam.advance, first.start, end)
 
 
 def _residual(question: Question, cam: CamProfile | None, curve: Piecewise, load: Load) -> float:
@@ -346,7 +268,8 @@ def _torques(question: Question, cam: CamProfile, drive: FollowerDrive) -> dict[
             'energy': figures.motor_energy + figures.regenerated_energy}
 
 
-def _broken_limit(question: Question, figures: Mapping[str, float]) -> str:
+def _broken_limit(question: Question, figures: Mapping[str, float], cam: CamProfile | None,
+                  curve: Piecewise) -> str:
     """Say which limit would break at the set speed, the one that breaks most; empty if none."""
     worst, text = 1.0 + _ROUNDING, ''
     for order, quantity in enumerate(QUANTITIES[1:], start=1):
@@ -358,6 +281,11 @@ def _broken_limit(question: Question, figures: Mapping[str, float]) -> str:
         if math.isinf(value):
             return 'its acceleration steps: no limit of the jerk can be kept'
         most = question.shaft_speed / RPM * worst ** (-1.0 / order)
-        text = (f'needs {value:.5g} {unit}, the limit is {limit:g}: it runs up to '
+        where = ''
+        if cam is not None and len(question.covered) > 1:
+            at = curve.peak(order).at % TURN
+            name = next(each.name for each in cam.segments if at <= each.end + _ROUNDING)
+            where = f' in {name}'
+        text = (f'needs {value:.5g} {unit}{where}, the limit is {limit:g}: it runs up to '
                 f'{math.floor(most * 100.0) / 100.0:g} cycles/min')
     return text

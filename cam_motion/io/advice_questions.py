@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from cam_motion.drive.inverse import FollowerDrive
 from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.io.advice import Question
+from cam_motion.io.advice_movement import Question
 from cam_motion.io.axis import build_axis, CoupledAxis, ONLY_CAM, Values
 from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.interlocks import line_values
@@ -135,7 +135,7 @@ def _of_axis(axis: CoupledAxis, speed: float, drive: FollowerDrive | None,
                     f'{axis.name}.{name}', axis.unit, segment.lift * coupling.scale, start_deg,
                     segment.end_deg, abs(speed * coupling.ratio),
                     (before.law.ends[1], after.law.ends[0]), profile, abs(speed), index,
-                    coupling.scale, axis.limits, swings, drive, segment.law))
+                    coupling.scale, axis.limits, swings, drive, segment.law, axis.layout, cam))
             start_deg = segment.end_deg
     # several cams at once: only their sum is what the drive and the limits see
     alone = len(axis.layout.active) == 1

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cam_motion.errors import ConfigurationError
-from cam_motion.io.advice import Question
+from cam_motion.io.advice_movement import Question
 from cam_motion.io.plain import finite
 from cam_motion.io.shaping_parameters import NO_FILTER
 from cam_motion.motion.laws import MotionLaw

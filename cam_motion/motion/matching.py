@@ -15,6 +15,7 @@ from dataclasses import replace
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.laws import MotionLaw
 from cam_motion.motion.laws.with_conditions import quintic
+from cam_motion.motion.laws.with_points import END_STATES
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import Piecewise
 from cam_motion.motion.points import through_points
@@ -86,6 +87,50 @@ def matched(segments: Sequence[Segment]) -> tuple[Segment, ...]:
                 segment.law.name, segment.law.parameters, Piecewise(0.0, [piece])))
         found.append(segment)
     return tuple(found)
+
+
+def shaped_with(segments: Sequence[Segment], index: int) -> tuple[int, ...]:
+    """
+    Find the segments whose curves follow from the law of one of them.
+
+    Parameters
+    ----------
+    segments : Sequence[Segment]
+        The segments of one turn.
+    index : int
+        Place of the one.
+
+    Returns
+    -------
+    tuple[int, ...]
+        Places in the order of the shaft, over its seam too, ``index`` among them: ``auto``
+        segments on both sides, up to a joint at which velocity and acceleration are stated, and
+        a spline whose end follows its neighbour.
+
+    """
+    count = len(segments)
+    before: list[int] = []
+    after: list[int] = []
+    for found, step in ((before, -1), (after, 1)):
+        here = index
+        while len(before) + len(after) + 1 < count:
+            place = (here + step) % count
+            other, first = segments[place], place if step < 0 else here
+            known = here == index or not (segments[here].is_auto or segments[here].is_spline)
+            if other.is_auto and not (first != index and segments[first].is_auto and _is_stated(
+                    segments[first], _STATED)):
+                found.append(place)
+                here = place
+                continue
+            if other.is_spline and known and not other.law.parameters['velocities'] and (
+                    not _is_stated(other, END_STATES[step < 0])):
+                found.append(place)
+            break
+    return (*reversed(before), index, *after)
+
+
+def _is_stated(segment: Segment, names: Sequence[str]) -> bool:
+    return None not in (segment.law.parameters[name] for name in names)
 
 
 def _joints(segments: Sequence[Segment], spans: Array, unit: float) -> Array:

@@ -33,7 +33,15 @@ def test_a_narrow_terminal_gets_the_reasons_as_a_list_of_their_own(cam_motion):
     lines = [line for line in done.stdout.splitlines() if line.startswith('  1  cycloidal')]
     assert len(lines) == 2
     assert '4996' in lines[0] and 'least jerk' in lines[1]
-    assert all(len(line) <= 120 for line in done.stdout.splitlines() if line[:3] != 'not')
+    assert all(len(line) <= 120 for line in done.stdout.splitlines())
+
+
+def test_the_kind_of_an_end_follows_from_its_velocity(cam_motion):
+    done = cam_motion('advise', '--lift', 0.1, '--span-deg', 90, '--speed-cpm', 60,
+                      '--end-velocity', 0.4)
+    assert done.returncode == 0
+    text = ' '.join(done.stdout.split())
+    assert 'from rest to constant velocity' in text and 'with end_velocity: 1' in text
 
 
 def test_json_holds_laws_and_filters(cam_motion, read_json):
@@ -78,6 +86,8 @@ def test_pictures_are_written(cam_motion, tmp_path, read_json):
     ((*ALONE, '--frequency-hz', -3), ['--frequency-hz']),
     ((*ALONE, '--container-width', 0.1), ['--fill-height']),
     ((*ALONE, '--by', 'peak_torque'), ['--by']),
+    ((*ALONE, '--start', 'motion'), ['--start-velocity', '--start-acceleration']),
+    ((CONFIG / 'feeding_group.yaml', '--end-velocity', 1), ['--end-velocity']),
     ((CONFIG / 'feeding_group.yaml', '--lift', 0.3), ['--lift']),
     ((CONFIG / 'feeding_group.yaml', 'feeder.wait'), ['feeder.wait']),
 ])

@@ -13,15 +13,18 @@ from pathlib import Path
 
 from cam_motion.drive.cycle import cycle_figures
 from cam_motion.errors import ConfigurationError
-from cam_motion.io.advice import advise, movement
+from cam_motion.io.advice import advise
 from cam_motion.io.advice_data import advice_as_data
+from cam_motion.io.advice_movement import movement
 from cam_motion.io.advice_questions import questions
+from cam_motion.io.axis import build_axis
 from cam_motion.io.config import load_machine, read_sections
 from cam_motion.io.filter_advice import advise_filters, filters_as_data
 from cam_motion.io.plain import to_json
 from cam_motion.motion.advice import BALANCED, Candidate, CRITERIA, merged, ranked, reason
 from cam_motion.motion.laws import Boundary, LAWS, laws_between, make_law
 from cam_motion.motion.shaping_effect import Load
+from cam_motion.motion.spline import EndState
 from cam_motion.motion.vibration import residual_spectrum
 from cam_motion.units import DEGREE, RPM, TURN
 import pytest
@@ -99,8 +102,9 @@ def test_other_boundary_conditions_have_other_laws():
     assert set(names(advice.ranking)) <= set(laws_between(*ends))
     assert {'polynomial_8', 'double_harmonic'} <= set(names(advice.ranking))
     assert 'cycloidal' in names(advice.stepping)  # at rest too, but its acceleration steps
+    mean = EndState(LIFT / DURATION)
     moving = advise(movement(LIFT, SPAN_DEG, CPM, (
-        Boundary.CONSTANT_VELOCITY, Boundary.CONSTANT_VELOCITY)))
+        Boundary.CONSTANT_VELOCITY, Boundary.CONSTANT_VELOCITY), start=mean, end=mean))
     assert 'constant_velocity' in names(moving.ranking)
     assert set(names(moving.ranking)) <= set(laws_between(*moving.question.ends))
 
@@ -226,9 +230,91 @@ def test_neighbours_that_move_are_met_by_the_law_auto():
     assert [each.name for each in asked] == ['knife.down', 'knife.follow', 'knife.up']
     assert asked[0].ends == (Boundary.REST, Boundary.CONSTANT_VELOCITY)
     advice = advise(asked[0])
-    assert names(advice.ranking) == ['auto'] and advice.stepping == ()
+    assert names(advice.ranking) == ['auto', 'modified_sine_vv']
+    assert names(advice.stepping) == ['harmonic_combination_tv']  # a turn behind a dwell
+    assert advice.ranking[0].candidate.same_as == ('polynomial',)
+    told = advice.ranking[1].candidate.law.parameters
+    assert (told['start_velocity'], told['end_velocity']) == pytest.approx(
+        (0.0, 0.05 / 60.0 * 90.0 / 0.1), rel=1e-12)
     refused = {each.law.name: each.refusal for each in advice.refused}
+    assert refused['acceleration_trapezoid_rv'] == (
+        'ends at 2 lifts per span, its neighbour there has 0.75')
     assert refused['cycloidal'] == 'ends at rest, its neighbour there is at constant velocity'
+
+
+def built_with(sections, candidate, axis, segment):
+    """Put a candidate into the file as a user would, and build the axis."""
+    values = {key: value for key, value in sections[axis].items()
+              if not key.startswith(f'{segment}.') or key in (
+                  f'{segment}.end_deg', f'{segment}.lift')}
+    told = {f'{segment}.{key}': list(value) if isinstance(value, tuple) else value
+            for key, value in candidate.law.parameters.items() if value is not None}
+    return build_axis(axis, {**values, f'{segment}.law': candidate.law.name, **told})
+
+
+@pytest.mark.parametrize('file, movement_name', [
+    ('flying_shear.yaml', 'carriage.back'), ('flying_shear.yaml', 'carriage.brake'),
+    ('flying_shear.yaml', 'carriage.accelerate'), ('rotary_knife.yaml', 'knife.ahead'),
+])
+def test_what_is_ranked_keeps_the_limits_of_the_whole_cam(file, movement_name):
+    sections = read_sections(CONFIG / file)
+    asked, = questions(sections, [movement_name])
+    advice = advise(asked)
+    assert len(advice.ranking) > 1
+    for each in (*advice.ranking, *advice.stepping):
+        axis = built_with(sections, each.candidate, *movement_name.split('.'))
+        bound = axis.bound_by(axis.limits)
+        assert bound is None or bound.omega >= asked.shaft_speed * (1.0 - 1e-9), each
+
+
+def test_the_segments_that_a_law_reshapes_count_with_it():
+    asked, = questions(read_sections(CONFIG / 'flying_shear.yaml'), ['carriage.back'])
+    assert asked.names_beside == ('brake',)
+    advice = advise(asked)
+    refused = {each.law.name: each.refusal for each in advice.refused}
+    # the fast return asks brake for more than the limit of the axis
+    assert refused['acceleration_trapezoid_vr'] == (
+        'needs 64.304 m/s² in brake, the limit is 40: it runs up to 47.32 cycles/min')
+    assert advice_as_data(advice)['covers_too'] == ['brake']
+    now = next(each.candidate for each in advice.ranking if each.candidate.configured)
+    cam = asked.profile
+    peaks = [cam.segment_peaks[place].acceleration.value for place in asked.covered]
+    assert now.figures['peak_acceleration'] == pytest.approx(
+        max(map(abs, peaks)) * asked.speed ** 2, rel=1e-12)
+
+
+def test_a_movement_on_its_own_meets_the_velocities_it_is_told():
+    start = EndState(0.4)
+    asked = movement(0.1, 90.0, 60.0, (Boundary.CONSTANT_VELOCITY, Boundary.REST), start=start)
+    advice = advise(asked)
+    assert names(advice.ranking) == ['auto', 'modified_sine_vv']
+    assert advice.ranking[0].candidate.same_as == ('polynomial',)
+    for each in (*advice.ranking, *advice.stepping):
+        curve = each.candidate.curve
+        assert curve.end_values(1)[0] * asked.speed == pytest.approx(0.4, rel=1e-12)
+        assert curve.end_values(1)[1] == pytest.approx(0.0, abs=1e-12)
+    refused = {each.law.name: each.refusal for each in advice.refused}
+    assert refused['acceleration_trapezoid_vr'] == (
+        'starts at 2 lifts per span, its neighbour there has 1')
+    moving = advise(movement(0.1, 90.0, 60.0, (Boundary.MOTION, Boundary.REST),
+                             start=EndState(0.4, 1.0)))
+    assert names(moving.ranking) == ['auto']
+    curve = moving.ranking[0].candidate.curve
+    assert curve.end_values(2)[0] * TURN ** 2 == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize('kind, state, paths', [
+    (Boundary.CONSTANT_VELOCITY, (0.0, 0.0), ['velocity']),
+    (Boundary.MOTION, (0.0, 0.0), ['velocity', 'acceleration']),
+    (Boundary.MOTION, (0.4, 0.0), ['acceleration']),
+    (Boundary.REST, (0.4, 1.0), ['velocity', 'acceleration']),
+    (Boundary.TURN, (0.4, 1.0), ['velocity']),
+])
+def test_an_end_that_contradicts_its_kind_is_refused(kind, state, paths):
+    with pytest.raises(ConfigurationError) as caught:
+        movement(0.1, 90.0, 60.0, (Boundary.REST, kind), end=EndState(*state))
+    assert [problem.path for problem in caught.value.problems] == [
+        f'--end-{name}' for name in paths]
 
 
 def test_standing_still_is_no_advice_for_a_table_that_comes_back():

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cam_motion.io.advice import Advice, Question
+from cam_motion.io.advice import Advice
+from cam_motion.io.advice_movement import Question
 from cam_motion.io.filter_advice import FilterFigures
 from cam_motion.io.plots.style import COLOURS, GREY, new_figure, styled
 from cam_motion.motion.advice import Candidate

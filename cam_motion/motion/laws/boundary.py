@@ -29,6 +29,11 @@ class Boundary(Enum):
     TURN = 'turn'
     MOTION = 'motion'
 
+    @property
+    def moves(self) -> bool:
+        """Whether there is a velocity."""
+        return self in (Boundary.CONSTANT_VELOCITY, Boundary.MOTION)
+
     @classmethod
     def of(cls, velocity: float, acceleration: float,
            largest_velocity: float, largest_acceleration: float) -> Boundary:
