@@ -10,11 +10,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from cam_motion.cli.options import add_config, add_json, add_speed
 from cam_motion.cli.terminal import console, number, print_json, print_problems, row, speed, table
-from cam_motion.errors import ConfigurationError
+from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.config import read_sections
 from cam_motion.io.contour import disc_text
 from cam_motion.io.linkage_data import range_text
@@ -81,7 +81,7 @@ def _print(check: CheckSummary, source: str) -> None:
     for axis in check.axes.values():
         _print_axis(axis, check.speed_cpm or 0.0)
     for name, cams in check.stepping.items():
-        _print_joints(name, cams, 'unit', check.speed_cpm or 0.0)
+        _print_joints(name, cams, check.units.get(name, 'unit'), check.speed_cpm or 0.0)
     if check.axes:
         line = check.line_bound
         if line is None:
@@ -100,11 +100,25 @@ def _print(check: CheckSummary, source: str) -> None:
     for name, settings in check.linkages.items():
         for variable in settings.linkage.inputs:
             out.print(f'linkage {name}, {range_text(settings, variable)}')
+    _print_warnings(check.warnings)
     if check.problems:
         out.file.flush()
         print_problems(check.problems, source)
     else:
-        out.print(f'no problems in {source}')
+        count = len(check.warnings)
+        out.print(f'no problems in {source}' + (
+            f', {count} warning{"s" * (count > 1)}' if count else ''))
+
+
+def _print_warnings(warnings: Sequence[Problem]) -> None:
+    # joints with one way out share it: the two ends of a segment, mostly
+    ways: dict[tuple[str, str], list[str]] = {}
+    for each in warnings:
+        ways.setdefault((each.path, each.hint), []).append(each.rule)
+    for (path, hint), rules in ways.items():
+        for rule in rules:
+            console().print(f'warning: {path}: {rule}', style='yellow')
+        console().print(f'  {hint}')
 
 
 def _print_axis(summary: AxisSummary, speed_cpm: float) -> None:

@@ -23,6 +23,7 @@ from cam_motion.io.cam_disc_config import CamDiscSettings
 from cam_motion.io.cam_drive_parameters import CAM_DRIVE
 from cam_motion.io.contour import check_discs
 from cam_motion.io.interlocks import JudgedInterlock, line_values
+from cam_motion.io.joint_warnings import joint_warnings
 from cam_motion.io.line_parts import guess_line, shaft_drives
 from cam_motion.io.linkage_config import build_linkages, linkage_names
 from cam_motion.io.linkage_settings import LinkageSettings
@@ -83,6 +84,8 @@ class AxisSummary:
         The highest shaft speed within its limits; None where nothing limits it.
     continuity : Mapping[str, Continuity]
         How smoothly each of its cams runs.
+    warnings : tuple[Problem, ...]
+        Joints at which the acceleration steps, paths relative to the axis.
 
     """
 
@@ -90,6 +93,7 @@ class AxisSummary:
     segments: tuple[SegmentSummary, ...]
     bound: SpeedBound | None
     continuity: Mapping[str, Continuity]
+    warnings: tuple[Problem, ...] = ()
 
     def runs_at(self, omega: float) -> bool:
         """
@@ -132,6 +136,8 @@ class CheckSummary:
         The joints of cams that are refused only because their velocity steps, by axis and cam.
     cam_discs : Mapping[str, CamDiscSettings]
         The cam discs that can be built.
+    units : Mapping[str, str]
+        Units of the axes in `stepping`.
 
     """
 
@@ -143,6 +149,13 @@ class CheckSummary:
     linkages: Mapping[str, LinkageSettings] = field(default_factory=dict)
     stepping: Mapping[str, Mapping[str, Continuity]] = field(default_factory=dict)
     cam_discs: Mapping[str, CamDiscSettings] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def warnings(self) -> tuple[Problem, ...]:
+        """List what is to be known of axes that are sound, paths of the whole configuration."""
+        return tuple(warning.below(name) for name, axis in self.axes.items()
+                     for warning in axis.warnings)
 
     @property
     def runs_at_set_speed(self) -> bool:
@@ -203,7 +216,8 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
     wrong = [each for each in wrong if each not in problems]  # of linkages beside the line
     discs, of_discs = check_discs(sections)
     return CheckSummary((*problems, *wrong, *of_discs), speed_cpm, axes, margins, interlocks,
-                        linkages, stepping, discs)
+                        linkages, stepping, discs,
+                        {name: str(sections[name].get('unit', 'm')) for name in stepping})
 
 
 def _margins(machine: Machine) -> dict[str, LimitFigures]:
@@ -296,8 +310,9 @@ def summarise_axis(axis: Axis, omega: float) -> AxisSummary:
 
     """
     cams = axis.layout.cams if isinstance(axis, CoupledAxis) else {ONLY_CAM: axis.profile}
-    return AxisSummary(axis, tuple(_segments(axis.profile, omega)), axis.speed_bound,
-                       {name: continuity_of(profile) for name, profile in cams.items()})
+    continuity = {name: continuity_of(profile) for name, profile in cams.items()}
+    return AxisSummary(axis, tuple(_segments(axis.profile, omega)), axis.speed_bound, continuity,
+                       joint_warnings(cams, continuity, axis.unit, omega))
 
 
 def _segments(profile: CamProfile, omega: float) -> list[SegmentSummary]:

@@ -43,6 +43,7 @@ def check_as_data(check: CheckSummary) -> dict[str, Any]:
     omega = (check.speed_cpm or 0.0) * RPM
     return {
         'problems': [problem_as_data(problem) for problem in check.problems],
+        'warnings': [problem_as_data(warning) for warning in check.warnings],
         'speed_cpm': check.speed_cpm,
         'runs_at_set_speed': check.runs_at_set_speed,
         'line': {

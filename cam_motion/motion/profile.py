@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.compiled import compile_periodic_sampler, Sampler
-from cam_motion.motion.laws import laws_between
 from cam_motion.motion.matching import matched
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import JOINT_TOLERANCE, Jump, Peak, Piecewise
+from cam_motion.motion.remedies import conditions_at, ends_asked, laws_instead, to_change
 from cam_motion.motion.segment import Segment
 from cam_motion.units import DEGREE, TURN
 import numpy as np
@@ -222,15 +222,15 @@ class CamProfile:
         problems = []
         for jump in self.jumps(1):
             n = names.get(jump.at, 0)
-            before, after = self.segments[n - 1], self.segments[(n + 1) % len(self.segments)]
-            start, end = before.law.ends[1], after.law.ends[0]
+            place = to_change(self.segments, n)
+            segment = self.segments[place]
+            asked = conditions_at(self.segments, self.parts, place)
             problems.append(Problem(
                 f'{self.segments[n].name}.law', self.segments[n].law.name,
                 'the velocity of a cam must not step: it steps by '
                 f'{jump.amount:.6g} per rad at {jump.at / DEGREE:.6g} deg',
-                'take a law that starts and ends at rest, or one that meets its neighbour '
-                f'at the same velocity; from {start.value} to {end.value} these run smoothly: '
-                + ', '.join(laws_between(start, end))))
+                f'give {segment.name} a law that runs {ends_asked(asked)}: '
+                + laws_instead(segment, asked)))
         return problems
 
 

@@ -221,3 +221,45 @@ def test_a_wrong_command_line_exits_with_2(cam_motion, arguments):
     done = cam_motion(*arguments)
     assert done.returncode == 2
     assert 'usage:' in done.stderr
+
+
+STEPS = """
+line: {ros__parameters: {master: master_shaft, axes: [ax]}}
+master_shaft: {ros__parameters: {speed_cpm: 60.0}}
+ax:
+  ros__parameters:
+    unit: m
+    segments: [a, b, c, d]
+    a: {end_deg: 60.0}
+    b: {law: simple_harmonic, end_deg: 180.0, lift: 0.1}
+    c: {end_deg: 240.0}
+    d: {law: cycloidal, end_deg: 360.0, lift: -0.1}
+"""
+
+
+def test_a_law_whose_acceleration_steps_at_a_joint_is_warned_of(cam_motion, read_json, tmp_path):
+    file = tmp_path / 'steps.yaml'
+    file.write_text(STEPS)
+    done = cam_motion('check', file, '--json')
+    data = read_json(done.stdout)
+    assert done.returncode == 0 and data['problems'] == [] and data['runs_at_set_speed']
+    assert [(each['path'], each['value']) for each in data['warnings']] == [
+        ('ax.b.law', 'simple_harmonic')] * 2
+    assert ['at 60 deg' in each['rule'] or 'at 180 deg' in each['rule']
+            for each in data['warnings']] == [True, True]
+    assert '4.441 m/s² at 60 cycles/min' in data['warnings'][0]['rule']
+    assert 'simple_harmonic is not legal from rest to rest' in data['warnings'][0]['rule']
+    legal = data['warnings'][0]['hint'].partition(': ')[2].split(', ')
+    assert {'modified_sine', 'polynomial_345', 'auto'} <= set(legal)
+    assert not {'simple_harmonic', 'cubic', 'constant_velocity'} & set(legal)
+    text = cam_motion('check', file)
+    assert text.returncode == 0 and f'no problems in {file}, 2 warnings' in (
+        ' '.join(text.stdout.split()))
+    assert text.stdout.count('warning: ax.b.law') == 2 and text.stdout.count('legal there') == 1
+
+
+def test_the_joints_of_a_refused_cam_have_the_unit_of_the_file(cam_motion, tmp_path):
+    file = tmp_path / 'line.yaml'
+    file.write_text(STEPS.replace('simple_harmonic', 'constant_velocity'))
+    done = cam_motion('check', file)
+    assert done.returncode == 2 and 'm/rad' in done.stdout and 'unit/' not in done.stdout
