@@ -26,11 +26,27 @@ from cam_motion.cli.terminal import (
     table,
 )
 from cam_motion.io.plain import finite, plain
-from cam_motion.motion.laws import Boundary, LAWS, LawType, make_law
+from cam_motion.motion.laws import (
+    Boundary,
+    Coefficients,
+    LAWS,
+    LawType,
+    make_law,
+    Member,
+    MotionLaw,
+)
 
 _LETTERS = {Boundary.REST: 'R', Boundary.CONSTANT_VELOCITY: 'V', Boundary.TURN: 'T',
             Boundary.MOTION: 'M'}
 _WIDE = 150  # columns needed for coefficients and prose side by side, a law mostly on one line
+_ROUNDING = 1e-9  # an acceleration of this share of the other sign's is none
+_CAPTION = (
+    'Real peaks for a lift h in a time T: velocity Cv h/T, acceleration Ca h/T²,\n'
+    "jerk Cj h/T³. Power is max|s' s''|. Ca of both signs where they differ. Ends:\n"
+    'R rest, V constant velocity, T turn, M motion, * any; a V end meets its own\n'
+    'velocity. Cj is infinite where the acceleration steps, within or at a T end\n'
+    'beside a dwell; in brackets the largest between the steps. Laws with\n'
+    'parameters at their defaults; indented: members with a name of their own.')
 
 
 def add_to(parser: argparse.ArgumentParser) -> None:
@@ -74,43 +90,61 @@ def run(arguments: argparse.Namespace) -> int:
     out = console()
     # a narrow terminal gets ends and what each law is as a list of its own
     wide = out.width >= _WIDE
-    prose = [('ends', 'left'), ('what it is', 'full')]
+    digits = 5 if wide else 4  # of two accelerations in one column
+    prose = [('ends', 'left'), ('source', 'right'), ('what it is', 'full')]
+    sources = list(dict.fromkeys(law.source for law in LAWS.values()))
     made = table(
         'Motion laws, normalised: lift 1 over span 1', [
             ('law', 'left'), ('Cv', 'right'), ('Ca', 'right'), ('Cj', 'right'),
-            ('power', 'right'), ('RMS acc.', 'right'), *(prose if wide else []),
-        ],
-        'Real peaks for a lift h in a time T: velocity Cv h/T, acceleration\n'
-        "Ca h/T², jerk Cj h/T³. Power is max|s' s''|. Where a law steps between\n"
-        'two dwells, what follows is infinite; in brackets the largest between\n'
-        'the steps. Ends: R rest, V constant velocity, T turn, M motion, and * for\n'
-        'any. Laws with parameters are shown at their defaults.')
+            ('power', 'right'), ('RMS\nacc.', 'right'), *(prose if wide else []),
+        ], _CAPTION)
+    about = table('', [('law', 'left'), *prose])
     for law in LAWS.values():
-        found = make_law(law.name).coefficients
-        ca = _finite(found.ca, found.ca_inside) if wide else number(found.ca)
-        row(made, law.name, number(found.cv), ca, _finite(found.cj, found.cj_inside),
-            number(found.power), number(found.rms_acceleration),
-            *([_ends(law), _what(law)] if wide else []))
+        words = _ends(law), f'[{sources.index(law.source) + 1}]', _what(law)
+        figures = ['by its', 'parameters', '', '', ''] if law.generic else (
+            _figures(make_law(law.name), digits))
+        row(made, law.name, *figures, *(words if wide else []))
+        for member in law.members:
+            row(made, f'  {member.name}', *_figures(
+                make_law(law.name, **member.parameters), digits),
+                *(['', '', _told(member)] if wide else []))
+        row(about, law.name, *words)
+        for member in law.members:
+            row(about, f'  {member.name}', '', '', _told(member))
     out.print(made)
     if not wide:
-        made = table('', [('law', 'left'), *prose])
-        for law in LAWS.values():
-            row(made, law.name, _ends(law), _what(law))
-        out.print(made)
+        out.print(about)
+    listed = table('', [('', 'right'), ('source', 'full')])
+    for number_, source in enumerate(sources, start=1):
+        row(listed, f'[{number_}]', source)
+    out.print(listed)
     print_files(files)
     return 0
 
 
 def _draw(path: Path) -> Path:
     from cam_motion.io.plots import laws_figure
-    # what only its conditions give a shape has none to show
+    # what only its conditions or parameters give a shape has none to show
     shown = [make_law(law.name) for law in LAWS.values()
-             if law.name != 'dwell' and not law.any_ends]
+             if law.name != 'dwell' and not law.generic]
     return save_figure(laws_figure(shown), path)
 
 
-def _finite(value: float, inside: float) -> str:
-    return f'∞ [{number(inside)}]' if math.isinf(value) else number(value)
+def _figures(law: MotionLaw, digits: int) -> list[str]:
+    found = law.coefficients
+    cj = f'∞ [{number(found.cj_inside)}]' if math.isinf(found.cj) else number(found.cj)
+    return [number(found.cv), _acceleration(found, digits), cj, number(found.power),
+            number(found.rms_acceleration)]
+
+
+def _acceleration(found: Coefficients, digits: int) -> str:
+    """Write the peak, with the sign where there is one only, both where they differ."""
+    least, greatest = found.ca_least, found.ca_greatest
+    if math.isinf(found.ca) or number(greatest) == number(-least):
+        return number(found.ca)
+    told = [value for value in (greatest, least) if abs(value) > _ROUNDING * found.ca_inside]
+    return '/'.join(('+' if value > 0.0 else '') + number(value, digits if told[1:] else 5)
+                    for value in told)
 
 
 def _ends(law: LawType) -> str:
@@ -122,11 +156,21 @@ def _what(law: LawType) -> str:
     return f'{law.summary}; takes {names}' if names else law.summary
 
 
+def _told(member: Member) -> str:
+    return ', '.join(f'{key}: {_plain_text(value)}' for key, value in member.parameters.items())
+
+
+def _plain_text(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f'[{", ".join(map(_plain_text, value))}]'
+    return number(value, 7)
+
+
 def _as_data(law: LawType) -> dict[str, Any]:
     made = make_law(law.name)
     return {
         'name': law.name,
-        **{key: finite(value) for key, value in asdict(made.coefficients).items()},
+        **_coefficients_as_data(made),
         'ends': [end.value for end in made.ends],
         'summary': law.summary,
         'source': law.source,
@@ -134,4 +178,13 @@ def _as_data(law: LawType) -> dict[str, Any]:
             {'name': each.name, 'default': plain(each.default), 'rule': each.rule,
              'count': each.count} for each in law.parameters
         ],
+        'by_parameters': law.generic,
+        'members': [
+            {'name': member.name, 'parameters': plain(member.parameters),
+             **_coefficients_as_data(make_law(law.name, **member.parameters))}
+            for member in law.members],
     }
+
+
+def _coefficients_as_data(law: MotionLaw) -> dict[str, float | None]:
+    return {key: finite(value) for key, value in asdict(law.coefficients).items()}

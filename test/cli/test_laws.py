@@ -39,8 +39,21 @@ def test_coefficients_are_those_of_the_documents(cam_motion, read_json):
 def test_infinite_coefficients_are_null(cam_motion, read_json):
     laws = {law['name']: law for law in read_json(cam_motion('laws', '--json').stdout)}
     assert laws['cubic']['cj'] is None
-    assert laws['constant_velocity']['ca'] is None
-    assert laws['constant_velocity']['rms_acceleration'] is None
+    assert laws['constant_acceleration']['cj'] is None
+    # what ends at a velocity meets that velocity
+    assert laws['constant_velocity']['ca'] == laws['constant_velocity']['power'] == 0.0
+    assert None not in (laws['modified_sine_vv'][key] for key in CONTRACT)
+
+
+def test_json_tells_families_and_their_members(cam_motion, read_json):
+    laws = {law['name']: law for law in read_json(cam_motion('laws', '--json').stdout)}
+    assert [name for name, law in laws.items() if law['by_parameters']] == [
+        'universal', 'scca', 'b_spline', 'polynomial', 'auto', 'flexible_polynomial', 'spline']
+    members = {each['name']: each for each in laws['modified_constant_velocity']['members']}
+    assert list(members) == ['MCV20', 'MCV33', 'MCV50']
+    assert members['MCV20']['power'] == pytest.approx(5.1414, abs=5e-5)
+    assert members['MCV20']['parameters'] == {'constant_velocity': 0.2}
+    assert laws['double_harmonic']['ca_least'] == pytest.approx(-math.pi ** 2)
 
 
 @pytest.mark.parametrize('columns', ['80', '120'])
@@ -50,6 +63,13 @@ def test_table_shows_infinite_jerk_with_the_jerk_inside_in_brackets(cam_motion, 
     assert '∞ [12]' in cubic
     assert max(map(len, done.stdout.splitlines())) <= int(columns)
     assert all(law in done.stdout for law in LAWS)
+    double = next(line.split() for line in done.stdout.splitlines() if 'double_harmonic ' in line)
+    assert double[2] == '+5.552/-9.87'
+    polynomial = next(line.split() for line in done.stdout.splitlines() if ' auto ' in line)
+    assert polynomial == ['auto', 'by', 'its', 'parameters']
+    assert '  MCV20' in done.stdout and '  MT 40/60' in done.stdout
+    assert ' [15]  R. L. Norton' in done.stdout
+    assert any(line.split()[:3] == ['scca', 'R-R', '[15]'] for line in done.stdout.splitlines())
 
 
 def test_json_tells_what_each_law_does_at_its_ends(cam_motion, read_json):
@@ -73,4 +93,5 @@ def test_all_laws_are_drawn_on_one_sheet(cam_motion, tmp_path):
     assert done.returncode == 0 and f'wrote {sheet}' in done.stdout
     text = sheet.read_text()
     assert all(law in text for law in ('modified_sine', 'polynomial_6_to_11', 'Cj 39.478'))
-    assert 'flexible_polynomial' not in text
+    assert 'flexible_polynomial' not in text and 'scca' not in text
+    assert 's‴/80' in text and 'harmonic_combination_vt  V-T' in text

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 import math
 
 from cam_motion.io.plots.style import COLOURS, figure_text, new_figure, styled
-from cam_motion.motion.laws import MotionLaw
+from cam_motion.motion.laws import Boundary, MotionLaw
 from cam_motion.motion.piece import Array
 from cam_motion.motion.piecewise import Piecewise
 from matplotlib.axes import Axes
@@ -25,13 +25,16 @@ _COLUMNS = 4
 _ROW = 1.75  # height of a row of panels [inch]
 _POINTS = 60  # per piece
 # Derivative, its name and what it is divided by, so that all three fit one scale.
-_CURVES = ((1, 's′', 1.0), (2, 's″/4', 4.0), (3, 's‴/40', 40.0))
-_LOW, _HIGH = -4.0, 3.2  # of the scale; what is larger is cut off, the text stands below
+_CURVES = ((0, 's', 1.0), (1, 's′', 1.0), (2, 's″/4', 4.0), (3, 's‴/80', 80.0))
+_MARGIN = 0.1  # of the scale, above and below
+_TEXT = 0.14  # of the scale, below the curves
+_LETTERS = {Boundary.REST: 'R', Boundary.CONSTANT_VELOCITY: 'V', Boundary.TURN: 'T',
+            Boundary.MOTION: 'M'}
 
 
 def laws_figure(laws: Iterable[MotionLaw]) -> Figure:
     """
-    Draw velocity, acceleration and jerk of motion laws.
+    Draw position, velocity, acceleration and jerk of motion laws.
 
     Parameters
     ----------
@@ -41,7 +44,8 @@ def laws_figure(laws: Iterable[MotionLaw]) -> Figure:
     Returns
     -------
     Figure
-        One panel per law with its coefficients; the scales are the same in all.
+        One panel per law with its ends and coefficients; the scales are the same in all, and
+        nothing is cut off.
 
     """
     laws = list(laws)
@@ -49,8 +53,10 @@ def laws_figure(laws: Iterable[MotionLaw]) -> Figure:
     with styled():
         figure = new_figure(_ROW * rows + 0.5)
         panels = figure.subplots(rows, _COLUMNS, sharex=True, sharey=True, squeeze=False)
-        for panel, law in zip(panels.flat, laws):
-            _draw(panel, law)
+        values = [value for panel, law in zip(panels.flat, laws) for value in _draw(panel, law)]
+        low, high = min(values, default=-1.0), max(values, default=1.0)
+        height = high - low
+        panels.flat[0].set_ylim(low - (_MARGIN + _TEXT) * height, high + _MARGIN * height)
         for panel in panels.flat[len(laws):]:
             panel.set_visible(False)
         for n in range(max(0, len(laws) - _COLUMNS), len(laws)):
@@ -62,20 +68,23 @@ def laws_figure(laws: Iterable[MotionLaw]) -> Figure:
     return figure
 
 
-def _draw(panel: Axes, law: MotionLaw) -> None:
+def _draw(panel: Axes, law: MotionLaw) -> tuple[float, float]:
+    """Draw a law; give the range of its values."""
     panel.axhline(0.0, color='#444444', linewidth=0.8, zorder=1)
+    low, high = 0.0, 1.0
     for n, (order, _, divisor) in enumerate(_CURVES):
         xi, values = _with_steps(law.curve, order)
-        panel.plot(xi, values / divisor, color=COLOURS[n], linewidth=1.2, zorder=4 - n)
+        panel.plot(xi, values / divisor, color=COLOURS[n], linewidth=1.2, zorder=5 - n)
+        low, high = min(low, values.min() / divisor), max(high, values.max() / divisor)
     panel.set_xlim(0.0, 1.0)
-    panel.set_ylim(_LOW, _HIGH)
-    panel.set_title(law.name, fontsize=8.0)
+    panel.set_title(f'{law.name}  {"-".join(_LETTERS[end] for end in law.ends)}', fontsize=8.0)
     found = law.coefficients
     panel.text(
         0.97, 0.03, '  '.join(f'{name} {_text(value)}' for name, value in (
             ('Cv', found.cv), ('Ca', found.ca), ('Cj', found.cj))),
         transform=panel.transAxes, ha='right', va='bottom', fontsize=6.5,
         bbox={'boxstyle': 'square,pad=0.1', 'color': 'white', 'alpha': 0.8})
+    return low, high
 
 
 def _text(value: float) -> str:
@@ -83,11 +92,10 @@ def _text(value: float) -> str:
 
 
 def _with_steps(curve: Piecewise, order: int) -> tuple[Array, Array]:
-    """Sample a derivative between two dwells; its steps are upright lines."""
+    """Sample a derivative as it is between its own ends; its steps are upright lines."""
     derivative = curve.differentiated(order)
     xi = [begin + np.linspace(0.0, piece.length, _POINTS)
           for begin, piece in zip(derivative.breaks, derivative.pieces)]
     values = [piece(at - begin) for begin, piece, at in zip(
         derivative.breaks, derivative.pieces, xi)]
-    ends = np.zeros(1)
-    return np.concatenate([ends, *xi, ends + 1.0]), np.concatenate([ends, *values, ends])
+    return np.concatenate(xi), np.concatenate(values)

@@ -25,13 +25,14 @@ from cam_motion.motion.laws.law import (
     laws_between,
     LawType,
     make_law,
+    Member,
     MotionLaw,
     register,
 )
 from cam_motion.motion.laws.parameters import LawParameter
 
 __all__ = [
-    'Boundary', 'Coefficients', 'LAWS', 'LawParameter', 'LawType', 'MotionLaw', 'harmonic',
-    'laws_between', 'make_law', 'modified', 'polynomial', 'register', 'scca', 'trapezoidal',
-    'variants', 'with_coefficients', 'with_conditions', 'with_points',
+    'Boundary', 'Coefficients', 'LAWS', 'LawParameter', 'LawType', 'Member', 'MotionLaw',
+    'harmonic', 'laws_between', 'make_law', 'modified', 'polynomial', 'register', 'scca',
+    'trapezoidal', 'variants', 'with_coefficients', 'with_conditions', 'with_points',
 ]

@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 import math
@@ -28,9 +28,11 @@ Builder = Callable[..., Piecewise]
 @dataclass(frozen=True)
 class Coefficients:
     """
-    The characteristic values of a law between two dwells.
+    The characteristic values of a law between neighbours that move as its own ends do.
 
-    A real movement of lift h in time T has the peaks ``cv h/T``, ``ca h/T²``, ``cj h/T³``.
+    A real movement of lift h in time T has the peaks ``cv h/T``, ``ca h/T²``, ``cj h/T³``. An
+    acceleration at an end counts as a step all the same: so it is at a dwell, where most of
+    these laws stand; at a turn of the same acceleration `cj_inside` holds.
 
     Attributes
     ----------
@@ -42,6 +44,8 @@ class Coefficients:
         Largest magnitude of s' s'' [-]: the power that an inertia takes.
     rms_acceleration : float
         Root mean square of s'' [-]: what heats a servo motor.
+    ca_least, ca_greatest : float
+        Least and greatest value of s'' between the steps, with their signs [-].
 
     """
 
@@ -52,6 +56,8 @@ class Coefficients:
     cj_inside: float
     power: float
     rms_acceleration: float
+    ca_least: float
+    ca_greatest: float
 
 
 @dataclass(frozen=True)
@@ -102,13 +108,13 @@ class MotionLaw:
     def coefficients(self) -> Coefficients:
         """Compute the law's characteristic values, exact to rounding."""
         curve = self.curve
-        scale = max(abs(curve.peak(1).value), 1e-300)
-        steps_velocity = bool(curve.jumps(1)) or any(
-            abs(end) > JOINT_TOLERANCE * scale for end in curve.end_values(1)
-        )
+        steps_velocity = bool(curve.jumps(1))
         ca = abs(curve.peak(2).value)
+        least, greatest = (each.value for each in curve.extremes(2))
+        # beside a velocity that hardly changes an acceleration is rounding, too
+        some = max(ca, JOINT_TOLERANCE * abs(curve.peak(1).value))
         steps_acceleration = steps_velocity or bool(curve.jumps(2)) or any(
-            abs(end) > JOINT_TOLERANCE * ca for end in curve.end_values(2)
+            abs(end) > JOINT_TOLERANCE * some for end in curve.end_values(2)
         )
         cj_inside = abs(curve.peak(3).value)
         return Coefficients(
@@ -119,6 +125,7 @@ class MotionLaw:
             cj_inside=cj_inside,
             power=math.inf if steps_velocity else abs(curve.peak_power().value),
             rms_acceleration=math.inf if steps_velocity else curve.rms(2),
+            ca_least=least, ca_greatest=greatest,
         )
 
     @cached_property
@@ -127,6 +134,24 @@ class MotionLaw:
         peaks = (abs(self.curve.peak(1).value), abs(self.curve.peak(2).value))
         (v0, v1), (a0, a1) = self.curve.end_values(1), self.curve.end_values(2)
         return Boundary.of(v0, a0, *peaks), Boundary.of(v1, a1, *peaks)
+
+
+@dataclass(frozen=True)
+class Member:
+    """
+    A member of a family that catalogues know by a name of its own.
+
+    Attributes
+    ----------
+    name : str
+        The name.
+    parameters : Mapping[str, Any]
+        The parameters of the family that make it.
+
+    """
+
+    name: str
+    parameters: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -149,6 +174,11 @@ class LawType:
         together.
     any_ends : bool
         Whether its parameters or neighbours can give its ends any velocity and acceleration.
+    members : tuple[Member, ...]
+        Those of its members that have names of their own.
+    generic : bool
+        Whether its defaults are just one member of many, with another name: its coefficients
+        say nothing of the family.
 
     """
 
@@ -158,6 +188,8 @@ class LawType:
     parameters: tuple[LawParameter, ...]
     build: Builder
     any_ends: bool = False
+    members: tuple[Member, ...] = ()
+    generic: bool = False
 
 
 LAWS: dict[str, LawType] = {}
@@ -165,7 +197,8 @@ LAWS: dict[str, LawType] = {}
 
 
 def register(
-    name: str, summary: str, source: str, *parameters: LawParameter, any_ends: bool = False
+    name: str, summary: str, source: str, *parameters: LawParameter, any_ends: bool = False,
+    members: Sequence[Member] = (), generic: bool = False
 ) -> Callable[[Builder], Builder]:
     """
     Register the decorated builder as a law.
@@ -176,7 +209,9 @@ def register(
         See `LawType`.
     *parameters : LawParameter
         The parameters of the builder, in order.
-    any_ends : bool
+    any_ends, generic : bool
+        See `LawType`.
+    members : Sequence[Member]
         See `LawType`.
 
     Returns
@@ -186,7 +221,8 @@ def register(
 
     """
     def enter(build: Builder) -> Builder:
-        LAWS[name] = LawType(name, summary, source, parameters, build, any_ends)
+        LAWS[name] = LawType(name, summary, source, parameters, build, any_ends, tuple(members),
+                             generic or any_ends)
         return build
     return enter
 
@@ -252,9 +288,9 @@ def laws_between(start: Boundary, end: Boundary) -> list[str]:
 
     """
     return [name for name, law in LAWS.items() if name != 'dwell' and (
-        law.any_ends or _default_ends(law) == (start, end))]
+        law.any_ends or _default_ends(name) == (start, end))]
 
 
 @cache
-def _default_ends(law: LawType) -> tuple[Boundary, Boundary]:
-    return make_law(law.name).ends
+def _default_ends(name: str) -> tuple[Boundary, Boundary]:
+    return make_law(name).ends

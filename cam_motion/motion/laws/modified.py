@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 import math
 
-from cam_motion.motion.laws.law import register
+from cam_motion.motion.laws.law import Member, register
 from cam_motion.motion.laws.parameters import LawParameter, SHORTEST_STAGE, SUM_TOLERANCE
 from cam_motion.motion.piece import Piece, Wave
 from cam_motion.motion.piecewise import Piecewise
@@ -23,12 +23,17 @@ _FRACTIONS = LawParameter(
     'seven stage lengths, each from 0 to 1, that sum to 1; the first three and the last three '
     'must not all be 0', count=7,
 )
+_MEMBERS = (
+    Member('MT 1/16', {'fractions': (0.0625, 0.375, 0.0625, 0.0, 0.0625, 0.375, 0.0625)}),
+    Member('MT 40/60', {'fractions': (0.1, 0.2, 0.1, 0.0, 0.15, 0.3, 0.15)}),
+    Member('MT of seven equal parts', {'fractions': (1.0 / 7.0,) * 7}),
+)
 
 
 @register('modified_trapezoid',
           'seven stages of acceleration: sine, constant, sine, zero, and back',
           'document 000, ModTVP; document 001, modified trapezoidal (seven parameters)',
-          _FRACTIONS)
+          _FRACTIONS, members=_MEMBERS)
 def modified_trapezoid(fractions: tuple[float, ...]) -> Piecewise:
     """
     Build the modified trapezoidal law from its seven stages.

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from cam_motion.motion.laws.inflection import INFLECTION, with_inflection
-from cam_motion.motion.laws.law import register
+from cam_motion.motion.laws.law import Member, register
 from cam_motion.motion.laws.modified import modified_trapezoid
 from cam_motion.motion.laws.parameters import LawParameter, SUM_TOLERANCE
 from cam_motion.motion.piecewise import Piecewise
@@ -42,7 +42,7 @@ _RAMP_DOWN = LawParameter(
 
 
 @register('universal', 'universal cam curve of Makino: seven stages between the joints T1 to T6',
-          'H. Makino (1976), universal cam curve', _JOINTS)
+          'H. Makino (1976), universal cam curve', _JOINTS, generic=True)
 def universal(joints: tuple[float, ...]) -> Piecewise:
     """
     Build the universal cam curve from its joints.
@@ -82,7 +82,7 @@ def universal(joints: tuple[float, ...]) -> Piecewise:
 
 @register('scca', 'sine, constant, cosine acceleration by three shares (Norton b, c, d)',
           'R. L. Norton, Cam Design and Manufacturing Handbook (2002), SCCA family',
-          _SHARES, _NO_HOLD, INFLECTION)
+          _SHARES, _NO_HOLD, INFLECTION, generic=True)
 def scca(shares: tuple[float, ...], constant_velocity: float, inflection: float) -> Piecewise:
     """
     Build a law of the sine - constant - cosine acceleration family.
@@ -124,7 +124,7 @@ def scca(shares: tuple[float, ...], constant_velocity: float, inflection: float)
     return with_inflection(curve, inflection)
 
 
-@register('modified_sine', 'slow and fast sine: the least torque at finite jerk (Neklutin)',
+@register('modified_sine', 'slow and fast sine: little torque at finite jerk (Neklutin)',
           'VDI 2143 sheet 1, modified sine line', INFLECTION)
 def modified_sine(inflection: float) -> Piecewise:
     """
@@ -150,7 +150,10 @@ def modified_sine(inflection: float) -> Piecewise:
 
 @register('modified_constant_velocity', 'modified sine with a stretch of constant velocity (MCV)',
           'R. L. Norton, Cam Design and Manufacturing Handbook (2002), SCCA family',
-          _HOLD, INFLECTION)
+          _HOLD, INFLECTION, members=(
+              Member('MCV20', {'constant_velocity': 0.2}),
+              Member('MCV33', {'constant_velocity': 1.0 / 3.0}),
+              Member('MCV50', {'constant_velocity': 0.5})))
 def modified_constant_velocity(constant_velocity: float, inflection: float) -> Piecewise:
     """
     Build the modified sine with constant velocity between its halves.
@@ -178,7 +181,8 @@ def modified_constant_velocity(constant_velocity: float, inflection: float) -> P
 
 @register('cycloidal_constant_velocity', 'cycloidal with a stretch of constant velocity',
           'R. L. Norton, Cam Design and Manufacturing Handbook (2002), SCCA family',
-          _HOLD, INFLECTION)
+          _HOLD, INFLECTION, members=(
+              Member('cycloidal CV50', {'constant_velocity': 0.5}),))
 def cycloidal_constant_velocity(constant_velocity: float, inflection: float) -> Piecewise:
     """
     Build the cycloidal law with constant velocity between its halves.
