@@ -43,7 +43,8 @@ from cam_motion.io.tables.export import (
     ExportedTable,
     ExportOptions,
 )
-from cam_motion.io.tables.lint import Finding, lint, NOTE
+from cam_motion.io.tables.finding import Finding, NOTE
+from cam_motion.io.tables.lint import lint
 from cam_motion.io.tables.repair import import_table, ImportedCam
 from cam_motion.io.tables.text import DELIMITERS
 from cam_motion.units import DEGREE, RPM, TURN
@@ -156,8 +157,9 @@ def _add_target(parser: argparse.ArgumentParser, prefix: str) -> None:
                        help='number of points, the closing one included (default: 361)')
     count.add_argument('--tolerance', type=_above_zero, metavar='T',
                        help='the fewest points with which the position is off by no more [unit]')
-    parser.add_argument('--decimals', type=int, choices=range(16), default=6, metavar='N',
-                        help='digits behind the point of the positions (default: 6)')
+    parser.add_argument('--decimals', type=int, choices=range(16), metavar='N',
+                        help='digits behind the point of the positions (default: a ten-millionth '
+                             'of the stroke, at least 6)')
     parser.add_argument(f'--{prefix}cycle-length', type=_above_zero, metavar='X',
                         dest='target_length', help='what the master column is to count in one '
                                                    'cycle (default: 360)')

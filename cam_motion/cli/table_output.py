@@ -18,7 +18,7 @@ from cam_motion.cli.terminal import table as new_table
 from cam_motion.io.plain import finite
 from cam_motion.io.tables import CamTable
 from cam_motion.io.tables.export import CamToExport, ExportedTable
-from cam_motion.io.tables.lint import ERROR, Finding
+from cam_motion.io.tables.finding import ERROR, Finding
 from cam_motion.io.tables.repair import CurveFigures, ImportedCam
 from cam_motion.motion.limits import QUANTITIES
 from cam_motion.motion.piecewise import Peak

@@ -23,7 +23,12 @@ from cam_motion.io.tables import (
     write_text,
     written_formats,
 )
-from cam_motion.io.tables.export import CamToExport, export_cam, ExportOptions
+from cam_motion.io.tables.export import (
+    CamToExport,
+    decimals_for,
+    export_cam,
+    ExportOptions,
+)
 from cam_motion.io.tables.lint import lint
 from cam_motion.io.tables.repair import figures_of, import_table
 from cam_motion.io.tables.table import to_cam
@@ -297,3 +302,30 @@ def test_a_table_goes_all_the_way_round(tmp_path, name):
     # within the tolerance of the table that it began with
     own = back.axis.profile(first.angle) + back.section.get('offset', 0.0)
     assert np.abs(own - first.position).max() < 1e-3 + 1e-6
+
+
+def test_a_repair_that_cannot_be_that_close_is_refused_with_what_can():
+    made = table(DEGREES, np.round(positions(), 6))
+    for tolerance in (1e-3, 1e-6, 1e-8, 1e-10, 1e-13):
+        try:
+            taken = import_table(made, 'press', 'mm', tolerance)
+        except ConfigurationError as error:
+            problem, = error.problems
+            assert tolerance <= 1e-8 and problem.path == '--repair'
+            assert 'or more' in problem.hint
+        else:
+            assert taken.deviation <= tolerance * (1.0 + 1e-9)
+    with pytest.raises(ConfigurationError, match='no curve was found that close'):
+        import_table(made, 'press', 'mm', 1e-13)
+
+
+@pytest.mark.parametrize('lift, scale, decimals', [
+    (20.0, 1.0, 6), (0.02, 1.0, 9), (0.3, 1.0, 8), (0.02, 0.001, 6), (1e-12, 1.0, 15)])
+def test_positions_are_written_with_the_digits_that_their_stroke_asks_for(lift, scale, decimals):
+    cam = CamToExport('press', CamProfile([
+        segment('down', 180.0, lift, 'modified_sine'),
+        segment('up', 360.0, -lift, 'modified_sine')]).curve)
+    assert decimals_for(cam, FORMATS['csv'], scale) == decimals
+    made = export_cam(cam, 'csv', ExportOptions(slave_scale=scale))
+    assert made.samples.decimals == decimals
+    assert export_cam(cam, 'csv', ExportOptions(decimals=3)).samples.decimals == 3

@@ -214,3 +214,47 @@ def test_one_wrong_velocity_is_told_with_what_the_positions_give():
     each, = found(DEGREES, positions(), v, interpolation='cubic')
     assert (each.code, each.line) == ('velocity_contradicts', 31)
     assert 'the velocity 0 contradicts the positions' in each.text
+
+
+@pytest.mark.parametrize('decimals', [8, 6, 3])
+@pytest.mark.parametrize('count', [361, 3601, 20001])
+def test_rounding_alone_is_no_wrong_point(count, decimals):
+    degrees = np.linspace(0.0, 360.0, count)
+    wrong = found(degrees, np.round(positions(degrees=degrees), decimals))
+    assert {each.code for each in wrong} <= {'rounded_positions'}
+
+
+def test_a_table_of_many_points_is_judged_as_one_of_few():
+    noise = {}
+    for count in (361, 3601, 40001):
+        degrees = np.linspace(0.0, 360.0, count)
+        resolution = 10.0 ** -2 * (361.0 / count) ** 2
+        digits = round(-math.log10(resolution))
+        wrong = found(degrees, np.round(positions(degrees=degrees), digits))
+        only, = wrong
+        assert only.code == 'rounded_positions'
+        step = 2.0 * math.pi / (count - 1)
+        noise[count] = only.value / (10.0 ** -digits / step ** 2)
+    # half a unit at each of three points: up to two units of the last digit
+    assert all(0.8 < value <= 2.2 for value in noise.values())
+
+
+def test_rounded_angles_are_named_and_no_point_is_blamed():
+    degrees = np.linspace(0.0, 360.0, 1401)
+    only, = found(np.round(degrees, 3), positions(degrees=degrees))
+    assert only.code == 'rounded_angles' and 'more digits' in only.hint
+    assert only.value == pytest.approx(
+        np.abs(np.round(degrees, 3) - degrees).max() * DEGREE
+        * abs(press().curve.peak(1).value), rel=1e-3)
+    # angles that somebody chose are not rounded, nor are whole degrees
+    assert found(DEGREES, positions()) == []
+
+
+def test_a_line_that_repeats_the_one_before_is_left_out_with_a_note():
+    degrees = np.insert(DEGREES, 101, DEGREES[100])
+    made = table(degrees, np.insert(positions(), 101, positions()[100]))
+    assert len(made.angle) == 361 and lint(made, OMEGA, 'mm') == []
+    assert made.notes[-1] == 'left out, as they repeat the line before: line 102'
+    moved = np.insert(positions(), 101, positions()[100] + 1.0)
+    only, = found(degrees, moved)
+    assert only.code == 'duplicate_angle' and only.hint.endswith('--drop 102')

@@ -250,3 +250,20 @@ def test_what_breaks_the_rules_of_a_format_is_refused(tmp_path, text, name, word
     with pytest.raises(ConfigurationError) as caught:
         read_table(file, name=name)
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize('rows', [
+    '0,0,000000\n100,0,176166\n200,1,5\n360,0,000000\n',
+    '0,0,0,05\n90,5,1,20\n180,0,0,00\n',
+])
+def test_a_comma_for_columns_and_decimals_is_refused(tmp_path, rows):
+    with pytest.raises(ConfigurationError) as caught:
+        saved(tmp_path, rows)
+    problem, = caught.value.problems
+    assert 'a comma cannot stand between columns and before decimals' in problem.rule
+    assert 'semicolons' in problem.hint and problem.path.endswith('line 1')
+
+
+def test_columns_of_whole_numbers_may_stand_between_commas(tmp_path):
+    made, _ = saved(tmp_path, '0,0,0\n90,100,5\n180,200,0\n360,0,0\n')
+    assert made.velocity is not None and len(made.angle) == 4

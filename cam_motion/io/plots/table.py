@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import PurePath
 
 from cam_motion.io.plots.style import COLOURS, exact_curve, GREY, new_figure, styled
-from cam_motion.io.tables.lint import Finding, NOTE
+from cam_motion.io.tables.finding import Finding, NOTE
 from cam_motion.io.tables.outliers import second_differences
 from cam_motion.io.tables.repair import ImportedCam
 from cam_motion.io.tables.table import CamTable

@@ -10,84 +10,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 import math
 
-from cam_motion.io.tables.outliers import (
-    Break,
-    breaks_in,
-    resolution_of,
-    second_differences,
-)
-from cam_motion.io.tables.table import CamTable, LINEAR, QUINTIC, RETURN
+from cam_motion.io.tables.finding import Context, ERROR, Finding, NOTE, WARNING
+from cam_motion.io.tables.outliers import Break, breaks_in, second_differences
+from cam_motion.io.tables.resolution import rounded_angles, rounded_positions, too_few_points
+from cam_motion.io.tables.table import CamTable, LINEAR, RETURN
 from cam_motion.motion.piece import Array
-from cam_motion.motion.spline import interpolate, NATURAL, PERIODIC, smooth
+from cam_motion.motion.spline import interpolate, NATURAL, PERIODIC
 from cam_motion.units import DEGREE, rate_text, TURN
 import numpy as np
 
-ERROR, WARNING, NOTE = 'error', 'warning', 'note'
-
 _STAIRS = 4  # so many velocity steps on straight lines are a staircase
-_COARSE = 0.01  # error between every second point, as a share of the stroke, that is too much
-_NOISE = 0.05  # share of the peak acceleration that rounding may add
 _DIFFERS = 0.02  # share of its peak by which a column may differ from the positions
 _MOST_FINDINGS = 8
-
-
-@dataclass(frozen=True)
-class Finding:
-    """
-    One thing that is wrong with a table.
-
-    Attributes
-    ----------
-    code : str
-        Its name, for machines.
-    severity : str
-        ``error``: no cam can be made of it; ``warning``: the cam would jerk or be wrong;
-        ``note``: to be known.
-    line : int
-        Line of the file; 0 where it concerns all of it.
-    angle_deg : float
-        Shaft angle [deg]; NaN likewise.
-    value : float
-        How large it is, in the unit that ``text`` names.
-    text : str
-        What is wrong.
-    harm : str
-        What comes of it at the stated speed.
-    hint : str
-        The way out.
-
-    """
-
-    code: str
-    severity: str
-    line: int
-    angle_deg: float
-    value: float
-    text: str
-    harm: str
-    hint: str
-
-
-@dataclass(frozen=True)
-class _Context:
-    table: CamTable
-    omega: float
-    unit: str
-
-    def found(self, code: str, severity: str, place: int | None, value: float, text: str,
-              harm: str, hint: str) -> Finding:
-        line, angle = 0, math.nan
-        if place is not None:
-            line = self.table.lines[place]
-            angle = (self.table.start + float(self.table.angle[place])) / DEGREE
-        return Finding(code, severity, line, angle, float(value), text, harm, hint)
-
-    def rate(self, value: float, order: int) -> str:
-        """Write a derivative at the stated speed."""
-        return f'{value * self.omega**order:.5g} {rate_text(self.unit, order)}'
 
 
 def lint(table: CamTable, omega: float, unit: str = 'unit') -> list[Finding]:
@@ -109,7 +45,7 @@ def lint(table: CamTable, omega: float, unit: str = 'unit') -> list[Finding]:
         Everything found, errors first; nothing for a table that makes a good cam.
 
     """
-    context = _Context(table, omega, unit)
+    context = Context(table, omega, unit)
     found = _unusable(context)
     if not found:
         found += _ends(context)
@@ -120,7 +56,8 @@ def lint(table: CamTable, omega: float, unit: str = 'unit') -> list[Finding]:
         if table.velocity is not None:
             found += _columns(context)
         if not steps:
-            found += [*_coarse(context), *_rounded(context)]
+            found += [*too_few_points(context), *rounded_angles(context),
+                      *rounded_positions(context)]
     return sorted(found, key=lambda each: (ERROR, WARNING, NOTE).index(each.severity))
 
 
@@ -141,14 +78,14 @@ def errors_in(table: CamTable, unit: str = 'unit') -> list[Finding]:
         The errors of `lint`.
 
     """
-    return _unusable(_Context(table, 1.0, unit))
+    return _unusable(Context(table, 1.0, unit))
 
 
-def _unusable(context: _Context) -> list[Finding]:
+def _unusable(context: Context) -> list[Finding]:
     return list(_order(context)) or list(_open(context))
 
 
-def _order(context: _Context) -> Iterator[Finding]:
+def _order(context: Context) -> Iterator[Finding]:
     """Angles that stand still or fall."""
     table = context.table
     steps = np.diff(table.angle)
@@ -169,10 +106,31 @@ def _order(context: _Context) -> Iterator[Finding]:
             f'the angle falls from {before:.6g} to {after:.6g} deg',
             'there is no curve through it: the velocity would be infinite' if same else
             'a cam is read by rising angle',
-            'remove one of the two lines' if same else 'put the lines in order')
+            f'remove one of the two lines, or --drop {table.lines[place]}' if same
+            and place < len(table.angle) - 1 else 'remove one of the two lines' if same else
+            'put the lines in order')
 
 
-def _open(context: _Context) -> Iterator[Finding]:
+def closing_hint(table: CamTable) -> str:
+    """
+    Say with what a table whose ends differ can be taken over.
+
+    Parameters
+    ----------
+    table : CamTable
+        The table.
+
+    Returns
+    -------
+    str
+        The options: half of the gap goes into closing it, what is above that into smoothing.
+
+    """
+    return (f'--repair with more than {abs(table.advance) / 2.0:.3g}, '
+            f'{0.6 * abs(table.advance):.2g} for example; --cycle accumulate for a belt')
+
+
+def _open(context: Context) -> Iterator[Finding]:
     table = context.table
     last = len(table.angle) - 1
     if not table.covers_cycle:
@@ -186,7 +144,7 @@ def _open(context: _Context) -> Iterator[Finding]:
             f'add the missing points; or state --cycle-length {counted:.6g} if that is one cycle')
 
 
-def _ends(context: _Context) -> Iterator[Finding]:
+def _ends(context: Context) -> Iterator[Finding]:
     """Find ends that do not close in position, velocity or acceleration."""
     table = context.table
     last = len(table.angle) - 1
@@ -198,8 +156,7 @@ def _ends(context: _Context) -> Iterator[Finding]:
             f'a jump at every cycle: within one step of the table it is a velocity of '
             f'{context.rate(table.advance / step, 1)} and an acceleration of '
             f'{context.rate(table.advance / step**2, 2)}',
-            'make them equal, or --repair with a tolerance of at least '
-            f'{abs(table.advance) / 2.0:.3g}; --cycle accumulate for a belt')
+            f'make them equal, or {closing_hint(table)}')
         return
     for order, values in enumerate((table.velocity, table.acceleration), start=1):
         if values is None:
@@ -215,7 +172,7 @@ def _ends(context: _Context) -> Iterator[Finding]:
                 'make both ends equal, or leave the column out')
 
 
-def _steps(context: _Context, steps: list[Break]) -> Iterator[Finding]:
+def _steps(context: Context, steps: list[Break]) -> Iterator[Finding]:
     table = context.table
     kinks = [each for each in steps if each.kind == 'velocity_step']
     bends = second_differences(table)
@@ -249,7 +206,7 @@ def _steps(context: _Context, steps: list[Break]) -> Iterator[Finding]:
             'import it as a spline (as this program does), or give the controller more points')
 
 
-def _step(context: _Context, each: Break) -> Finding:
+def _step(context: Context, each: Break) -> Finding:
     unit, amount, step = context.unit, each.amount, each.step
     if each.kind == 'velocity_step':
         return context.found(
@@ -276,7 +233,7 @@ def _spline(table: CamTable, x: Array, y: Array, degree: int) -> tuple[Array, Ar
     return curve.evaluate(x, 1), curve.evaluate(x, 2)
 
 
-def _columns(context: _Context) -> Iterator[Finding]:
+def _columns(context: Context) -> Iterator[Finding]:
     """Compare columns with the derivatives of the positions."""
     table = context.table
     if len(table.angle) < 6:
@@ -316,60 +273,3 @@ def _scale(ratio: float, order: int, table: CamTable) -> tuple[str, str]:
     if math.isclose(ratio, -1.0, rel_tol=0.03):
         return ': its sign is wrong', 'turn its sign, or leave it out'
     return ': a wrong scale', f'divide it by {ratio:.6g}, or leave it out'
-
-
-def _coarse(context: _Context) -> Iterator[Finding]:
-    """Leave out every second point, and see what a spline makes of them."""
-    table = context.table
-    if table.stroke == 0.0 or table.velocity is not None:
-        return
-    kept = np.unique([*range(0, len(table.angle), 2), len(table.angle) - 1])
-    if len(kept) < 3:
-        miss, place, expected = table.stroke, 0, table.stroke
-    else:
-        x, y = table.angle[kept], table.position[kept]
-        closes = table.covers_cycle
-        curve = interpolate(x, y, 3, PERIODIC if closes else NATURAL)
-        misses = np.abs(curve.evaluate(table.angle) - table.position)
-        place = int(np.argmax(misses))
-        # halving the steps divides the error of a cubic spline by 16, where it is fine enough
-        miss = float(misses[place])
-        expected = miss / 16.0
-    if miss > _COARSE * table.stroke:
-        step = float(np.diff(table.angle).max())
-        yield context.found(
-            'too_few_points', WARNING, place, miss,
-            f'{len(table.angle)} points are too few: a spline through every second one misses '
-            f'the others by up to {miss:.4g} {context.unit}, '
-            f'{miss / table.stroke:.1%} of the stroke',
-            f'between the points the curve may be off by about {expected:.2g} {context.unit}, '
-            f'its acceleration by {context.rate(16.0 * expected / step**2, 2)}',
-            'export the table with at least twice as many points')
-
-
-def _rounded(context: _Context) -> Iterator[Finding]:
-    """See whether the rounding of the positions shows in the acceleration."""
-    table = context.table
-    resolution = resolution_of(table.position)
-    count = len(table.angle)
-    if resolution is None or table.stroke == 0.0 or count < 12 or table.interpolation == QUINTIC \
-            and table.acceleration is not None:
-        return
-    smoothed = smooth(table.angle, table.position, resolution, 5, table.covers_cycle)
-    bends = second_differences(table)
-    own = smoothed.curve.evaluate(np.clip(bends.angles, 0.0, table.angle[-1]), 2)
-    noise = np.abs(bends.values - own)
-    place = int(np.argmax(noise))
-    worst, peak = float(noise[place]), float(np.abs(own).max())
-    # what rounding can explain: half a unit at each of three points
-    explained = 2.0 * resolution / bends.steps[place] ** 2
-    if peak == 0.0 or worst <= _NOISE * peak or worst > 1.5 * explained:
-        return
-    third = worst / bends.steps[place]
-    yield context.found(
-        'rounded_positions', WARNING, int(bends.places[place]), worst,
-        f'positions are rounded to {resolution:g} {context.unit}: their second difference is '
-        f'off by up to {worst:.4g} {rate_text(context.unit, 2, "rad")}, {worst / peak:.0%} of '
-        'the peak acceleration',
-        f'noise of {context.rate(worst, 2)} in the acceleration, {context.rate(third, 3)} in the '
-        'jerk', f'export it with more digits, or --repair {resolution:g}')

@@ -21,6 +21,8 @@ _STANDS_OUT = 6.0  # a second difference so many times those around it is none o
 _SIDE = 0.3  # share of a spike that its neighbours have where one point is wrong
 _ROUNDING = 1e-12
 _MOST_DECIMALS = 9
+_EXACT = 1e-9  # angles this close (relative to a step) to equal steps have equal steps
+_FINE = 0.1  # resolution of angles, as a share of a step: a coarser one is a choice of points
 
 
 class Differences(NamedTuple):
@@ -83,7 +85,8 @@ def second_differences(table: CamTable) -> Differences:
     slopes = np.diff(y) / h
     resolution = _ROUNDING * max(float(np.abs(y).max()), table.stroke)
     decimals = 0.5 * (resolution_of(table.position) or 0.0)
-    noise = 3.0 * max(resolution, decimals) / steps**2
+    # each point may be off by that: once before, twice at, once behind the middle
+    noise = (4.0 + 1e-6) * (max(resolution, decimals) + angle_noise(table)) / steps**2
     return Differences(places, x[1:-1], np.diff(slopes) / steps, steps, noise)
 
 
@@ -107,6 +110,36 @@ def resolution_of(values: Array) -> float | None:
         if np.abs(scaled - np.round(scaled)).max() < 1e-6:
             return float(10.0**-decimals)
     return None
+
+
+def angle_noise(table: CamTable) -> float:
+    """
+    Tell by how much positions are off because their angles are rounded.
+
+    Parameters
+    ----------
+    table : CamTable
+        A table whose angles rise.
+
+    Returns
+    -------
+    float
+        Largest velocity times the largest distance of an angle from where it would be if all
+        had equal steps, in the unit of the axis; 0 where rounding does not explain that
+        distance.
+
+    """
+    ideal = np.linspace(table.angle[0], table.angle[-1], len(table.angle))
+    off = float(np.abs(table.angle - ideal).max())
+    step = float(ideal[1] - ideal[0])
+    if off <= _EXACT * step:
+        return 0.0
+    resolution = resolution_of((table.angle + table.start) * table.per_radian)
+    if resolution is None or off * table.per_radian > 0.51 * resolution or (
+            resolution > _FINE * step * table.per_radian):
+        return 0.0
+    slopes = np.diff(table.position) / np.diff(table.angle)
+    return off * float(np.abs(slopes).max())
 
 
 def breaks_in(table: CamTable) -> list[Break]:

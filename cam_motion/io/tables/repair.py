@@ -16,7 +16,7 @@ from typing import Any
 
 from cam_motion.errors import ConfigurationError, DomainError, Problem
 from cam_motion.io.axis import build_axis, CoupledAxis
-from cam_motion.io.tables.lint import errors_in
+from cam_motion.io.tables.lint import closing_hint, errors_in
 from cam_motion.io.tables.table import CamTable, CUBIC, QUINTIC, RETURN
 from cam_motion.motion.continuity import curve_joints
 from cam_motion.motion.piece import Array
@@ -29,6 +29,7 @@ SEGMENT = 'curve'
 """Name of the one segment of an axis made of a table."""
 
 _DIGITS = 12
+_SLACK = 1e-9  # rounding of a deviation (relative)
 # What rounding may leave of a step, as a share of the derivative's own peak.
 
 
@@ -157,7 +158,7 @@ def import_table(table: CamTable, name: str, unit: str = 'm', tolerance: float |
         problems.append(Problem(
             f'{table.source}, line {table.lines[-1]}', table.advance,
             'the last position must be the first of a cycle that returns',
-            f'--repair with more than {0.5 * abs(gap):.3g}, or --cycle accumulate'))
+            closing_hint(table)))
     if problems:
         raise ConfigurationError(problems)
     section = _section(table, unit, tolerance, degree, gap)
@@ -169,6 +170,12 @@ def import_table(table: CamTable, name: str, unit: str = 'm', tolerance: float |
     own = axis.profile.curve.evaluate(table.angle) + section.get('offset', 0.0)
     misses = np.abs(own - table.position)
     place = int(np.argmax(misses))
+    if tolerance is not None and misses[place] > tolerance * (1.0 + _SLACK):
+        raise ConfigurationError([Problem(
+            '--repair', tolerance, 'no curve was found that close to the points: at line '
+            f'{table.lines[place]} it is {misses[place]:.3g} {unit} off',
+            f'state {1.1 * misses[place]:.2g} or more, or leave it out: the curve then goes '
+            'through every point')])
     return ImportedCam(
         table, section, axis, float(misses[place]), place, tolerance,
         figures_of(table.curve(), table.advance if table.cycle != RETURN else 0.0),

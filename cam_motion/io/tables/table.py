@@ -259,6 +259,7 @@ def to_cam(raw: RawTable, options: TableOptions, source: str, name: str) -> CamT
                     f'a number must be at most {LARGEST:g}', 'take a larger unit')
             for line, row in zip(raw.lines, raw.columns) if np.abs(row).max() > LARGEST]:
         raise ConfigurationError(problems[:MOST_PROBLEMS])
+    raw = _without_repetition(raw)
     # what no machine can do is nothing
     columns = np.where(np.abs(raw.columns) < _NOTHING, 0.0, raw.columns)
     master, slave = columns[:, 0], columns[:, 1]
@@ -287,6 +288,21 @@ def to_cam(raw: RawTable, options: TableOptions, source: str, name: str) -> CamT
         interpolation=options.interpolation or raw.interpolation, source=source, format_name=name,
         notes=raw.notes)
     return _closed(table, options)
+
+
+def _without_repetition(raw: RawTable) -> RawTable:
+    """Leave out rows that say what the one before says: they say nothing."""
+    again = np.flatnonzero((np.diff(raw.columns, axis=0) == 0.0).all(axis=1)) + 1
+    if not again.size or len(raw.columns) - len(again) < 2:
+        return raw
+    kept = np.ones(len(raw.columns), dtype=bool)
+    kept[again] = False
+    lines = np.array(raw.lines)
+    told = ', '.join(map(str, lines[again][:MOST_PROBLEMS])) + ', ...' * (
+        len(again) > MOST_PROBLEMS)
+    note = f'left out, as they repeat the line before: line{"s" * (len(again) > 1)} {told}'
+    return replace(raw, columns=raw.columns[kept], lines=tuple(lines[kept].tolist()),
+                   notes=(*raw.notes, note))
 
 
 def _closed(table: CamTable, options: TableOptions) -> CamTable:

@@ -136,6 +136,12 @@ def read_rows(text: str, source: str, delimiter: str = '', first: int = 1, least
     numbers: list[int] = []
     heading: list[str] = []
     problems = []
+    if mark == ',' and (shown := _decimal_comma(lines)) is not None:
+        raise ConfigurationError([Problem(
+            f'{source}, line {first + shown}', lines[shown].strip(),
+            'a comma cannot stand between columns and before decimals as well: which it is '
+            'where, nobody can tell',
+            'write decimal points, or semicolons between the columns')])
 
     def wrong(place: int, line: str, rule: str, hint: str = '') -> None:
         problems.append(Problem(f'{source}, line {place}', line.strip(), rule, hint))
@@ -172,6 +178,14 @@ def read_rows(text: str, source: str, delimiter: str = '', first: int = 1, least
         raise ConfigurationError([Problem(
             source, f'rows of numbers: {len(rows)}', 'a table needs at least two points', hint)])
     return np.array(rows), tuple(numbers), heading
+
+
+def _decimal_comma(lines: list[str]) -> int | None:
+    """Find a line that shows decimals behind the delimiter, 100,0,176166: no number is 0176."""
+    if any('.' in line for line in lines if re.match(r'\s*[-+]?\d', line)):
+        return None
+    return next((place for place, line in enumerate(lines) if line.count(',') > 1 and any(
+        re.fullmatch(r'0\d+', cell) for cell in split(line, ',')[1:])), None)
 
 
 def written(value: float, decimals: int) -> str:
