@@ -10,6 +10,7 @@
 import math
 from math import pi, sqrt
 
+from cam_motion.errors import ConfigurationError
 from cam_motion.motion.laws import LAWS, make_law
 from hypothesis import given
 from hypothesis import strategies as st
@@ -199,3 +200,11 @@ def test_the_modified_trapezoid_has_the_plateaus_of_the_printed_formula(parts):
     if x4 > 0.0:
         assert law(t - x4 / 2, 1) == pytest.approx(v, rel=CLOSED_FORM)
         assert law(t - x4 / 2, 2) == 0.0
+
+
+def test_a_law_misspelt_is_answered_with_those_that_are_like_it():
+    with pytest.raises(ConfigurationError) as caught:
+        make_law('modifed_sine')
+    problem, = caught.value.problems
+    assert problem.hint.startswith('did you mean modified_sine')
+    assert 'known are: cycloidal' in problem.hint

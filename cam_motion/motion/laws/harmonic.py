@@ -117,7 +117,8 @@ def gutman_13(inflection: float) -> Piecewise:
     return with_inflection(_odd_harmonics((1, 15.0 / 16.0), (3, 1.0 / 48.0)), inflection)
 
 
-@register('freudenstein_13', 'first and third harmonic: less jerk than gutman_13, more acceleration',
+@register('freudenstein_13',
+          'first and third harmonic: less jerk, more acceleration than gutman_13',
           'F. Freudenstein, On the dynamics of high-speed cam profiles, '
           'Int. J. Mech. Sci. 1 (1960)', INFLECTION)
 def freudenstein_13(inflection: float) -> Piecewise:

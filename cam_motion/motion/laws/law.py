@@ -251,8 +251,11 @@ def make_law(name: str, **parameters: Any) -> MotionLaw:
 
     """
     if name not in LAWS:
+        from difflib import get_close_matches
+        close = ', '.join(get_close_matches(str(name), list(LAWS), n=3))
         raise ConfigurationError([Problem(
-            'law', name, 'a law must be one that is known', 'known are: ' + ', '.join(LAWS)
+            'law', name, 'a law must be one that is known',
+            (f'did you mean {close}? ' if close else '') + 'known are: ' + ', '.join(LAWS)
         )])
     law = LAWS[name]
     known = {parameter.name: parameter for parameter in law.parameters}
