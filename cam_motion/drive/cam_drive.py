@@ -279,4 +279,5 @@ class CamDrive:
         """
         along = sum((part.follower_force(at, omega, alpha) for part in self.parts),
                     np.zeros_like(at.q))
-        return along * np.hypot(at.s1, base + at.s) / (base + at.s)
+        normal: Array = along * np.hypot(at.s1, base + at.s) / (base + at.s)
+        return normal

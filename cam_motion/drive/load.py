@@ -15,7 +15,7 @@ follower. Q is kept as Q0(q) + Q1(q) w, for a shaft that turns forwards.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.motion.piece import Array
@@ -25,28 +25,34 @@ import numpy as np
 GRAVITY = 9.81
 """Acceleration of free fall as document 004 takes it [m/s²]."""
 
+_WHOLE = TURN * (1.0 + 1e-12)  # a window that ends here ends with the turn, but for rounding
+
 
 class Follower(NamedTuple):
     """
-    Where the follower is at given shaft angles, arrays of one shape.
+    Where the follower is at given shaft angles: arrays of one shape, or floats.
 
-    The angle ``q`` [rad] lies within one turn; ``s`` [m], ``s1`` [m/rad] and ``s2`` [m/rad²] are
-    position and derivatives with respect to the shaft angle.
+    The angle ``q`` [rad] lies within one turn, and is NaN where it is not known; ``s`` [m], ``s1``
+    [m/rad] and ``s2`` [m/rad²] are position and derivatives with respect to the shaft angle.
     """
 
-    q: Array
-    s: Array
-    s1: Array
-    s2: Array
+    q: Any
+    s: Any
+    s1: Any
+    s2: Any
 
 
 class Terms(NamedTuple):
-    """What a load adds at given angles: J and C [kg m²], Q0 [N m], Q1 [N m s/rad]."""
+    """
+    What a load adds at given angles: J and C [kg m²], Q0 [N m], Q1 [N m s/rad].
 
-    inertia: Array
-    centripetal: Array
-    force: Array
-    damping: Array
+    All are floats for a follower in floats, else arrays of its shape, or what broadcasts to it.
+    """
+
+    inertia: Any
+    centripetal: Any
+    force: Any
+    damping: Any
 
 
 class Part(Protocol):
@@ -78,7 +84,7 @@ class RotatingInertia(_Smooth):
 
     def terms(self, at: Follower) -> Terms:
         """Give a constant inertia."""
-        zero = np.zeros_like(at.q)
+        zero = 0.0 * at.s
         return Terms(zero + self.inertia, zero, zero, zero)
 
     def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
@@ -96,11 +102,12 @@ class TranslatingMass(_Smooth):
     def terms(self, at: Follower) -> Terms:
         """Give J = m s'², C = m s' s'', Q = -m g s'."""
         return Terms(self.mass * at.s1 ** 2, self.mass * at.s1 * at.s2,
-                     -self.mass * self.gravity * at.s1, np.zeros_like(at.q))
+                     -self.mass * self.gravity * at.s1, 0.0 * at.s)
 
     def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
         """Give the force of inertia and weight."""
-        return self.mass * (at.s1 * alpha + at.s2 * omega ** 2 + self.gravity)
+        force: Array = self.mass * (at.s1 * alpha + at.s2 * omega ** 2 + self.gravity)
+        return force
 
 
 @dataclass(frozen=True)
@@ -112,12 +119,13 @@ class Spring(_Smooth):
 
     def terms(self, at: Follower) -> Terms:
         """Give Q = -k (s + delta) s' (document 004 a) prints it without s')."""
-        zero = np.zeros_like(at.q)
+        zero = 0.0 * at.s
         return Terms(zero, zero, -self.stiffness * (at.s + self.preload) * at.s1, zero)
 
     def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
         """Give the force of the spring."""
-        return self.stiffness * (at.s + self.preload)
+        force: Array = self.stiffness * (at.s + self.preload)
+        return force
 
 
 @dataclass(frozen=True)
@@ -129,20 +137,29 @@ class Friction(_Smooth):
 
     def terms(self, at: Follower) -> Terms:
         """Give Q0 = -F |s'|, Q1 = -c s'²."""
-        zero = np.zeros_like(at.q)
-        return Terms(zero, zero, -self.coulomb * np.abs(at.s1), -self.viscous * at.s1 ** 2)
+        zero = 0.0 * at.s
+        return Terms(zero, zero, -self.coulomb * abs(at.s1), -self.viscous * at.s1 ** 2)
 
     def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
         """Give the friction as a force on the follower."""
-        return self.coulomb * np.sign(at.s1) + self.viscous * at.s1 * omega
+        force: Array = self.coulomb * np.sign(at.s1) + self.viscous * at.s1 * omega
+        return force
 
 
 def _check_window(window: tuple[float, float]) -> None:
     """Refuse a window that is none."""
     first, last = window
-    if not 0.0 <= first <= last <= TURN * (1.0 + 1e-12):
+    if not 0.0 <= first <= last <= _WHOLE:
         raise ConfigurationError([Problem(
             'window', window, 'must be two rising angles within one turn')])
+
+
+def _acts(window: tuple[float, float], q: Any) -> Any:
+    """Tell where angles lie in a window; a whole turn holds those too that are not known."""
+    first, last = window
+    if first <= 0.0 and last >= TURN:
+        return True
+    return (q >= first) & (q <= last)
 
 
 @dataclass(frozen=True)
@@ -174,18 +191,16 @@ class Process:
         """Refuse a window that is none."""
         _check_window(self.window)
 
-    def _acts(self, at: Follower) -> Array:
-        first, last = self.window
-        return np.asarray((at.q >= first) & (at.q <= last), dtype=float)
-
     def terms(self, at: Follower) -> Terms:
         """Give Q = -F s' - M inside the window."""
-        zero = np.zeros_like(at.q)
-        return Terms(zero, zero, -self._acts(at) * (self.force * at.s1 + self.moment), zero)
+        zero = 0.0 * at.s
+        against = self.force * at.s1 + self.moment
+        return Terms(zero, zero, zero - _acts(self.window, at.q) * against, zero)
 
     def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
         """Give the force of the process."""
-        return self._acts(at) * self.force
+        force: Array = np.zeros_like(at.q) + _acts(self.window, at.q) * self.force
+        return force
 
     def edges(self) -> tuple[float, ...]:
         """Give the ends of the window [rad]."""
@@ -227,7 +242,7 @@ class Lever:
         """Refuse a window that is none."""
         _check_window(self.window)
 
-    def ratios(self, at: Follower) -> tuple[Array, Array, Array]:
+    def ratios(self, at: Follower) -> tuple[Any, Any, Any]:
         """
         Give the transmission to the lever.
 
@@ -238,16 +253,17 @@ class Lever:
 
         Returns
         -------
-        tuple[ndarray, ndarray, ndarray]
+        tuple[float or ndarray, ...]
             arm * sin(phi) [m], g1 = dphi/dq [-] and its derivative g1' [1/rad].
 
         """
         across = self.height - at.s
-        reach = np.sqrt(self.arm ** 2 - across ** 2)
+        with np.errstate(invalid='ignore'):  # out of reach it is not defined
+            reach = np.sqrt(self.arm ** 2 - across ** 2)
         g1 = at.s1 / reach
         return reach, g1, (at.s2 * reach - across * g1 * at.s1) / reach ** 2
 
-    def moment_at(self, at: Follower) -> Array:
+    def moment_at(self, at: Follower) -> Any:
         """
         Give the moment against the lever.
 
@@ -258,23 +274,24 @@ class Lever:
 
         Returns
         -------
-        ndarray
+        float or ndarray
             Moment [N m].
 
         """
-        first, last = self.window
-        return np.where((at.q >= first) & (at.q <= last), self.moment, 0.0)
+        return 0.0 * at.s + _acts(self.window, at.q) * self.moment
 
     def terms(self, at: Follower) -> Terms:
         """Give J = I g1², C = I g1 g1', Q = -M g1."""
         _, g1, g1_slope = self.ratios(at)
         return Terms(self.inertia * g1 ** 2, self.inertia * g1 * g1_slope,
-                     -self.moment_at(at) * g1, np.zeros_like(at.q))
+                     -self.moment_at(at) * g1, 0.0 * at.s)
 
     def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
         """Give the force that turns the lever, (I phi'' + M) / (arm sin(phi))."""
         reach, g1, g1_slope = self.ratios(at)
-        return (self.inertia * (g1 * alpha + g1_slope * omega ** 2) + self.moment_at(at)) / reach
+        turned = self.inertia * (g1 * alpha + g1_slope * omega ** 2)
+        force: Array = (turned + self.moment_at(at)) / reach
+        return force
 
     def edges(self) -> tuple[float, ...]:
         """Give the ends of the window [rad]."""

@@ -9,9 +9,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from cam_motion.drive.axis_load import UNKNOWN
 from cam_motion.drive.inverse import FollowerDrive
 
 # At rest, a net torque below this share of those that act is what rounding left of a balance.
@@ -32,8 +32,7 @@ class Move(NamedTuple):
     after: float
 
 
-@dataclass(frozen=True)
-class RigidDrive:
+class RigidDrive(NamedTuple):
     """
     A drive without play or spring, every figure reduced to the motor shaft.
 
@@ -41,18 +40,17 @@ class RigidDrive:
     ----------
     motor_inertia, load_inertia : float
         Inertias before and behind the losses of the gearbox [kg m²].
-    resistance : float
-        Torque against the motion or, with ``always_resists``, against the positive direction
-        [N m]; not negative.
+    friction : float
+        Coulomb friction [N m], not negative: a torque against the motion, which holds the drive
+        at rest as long as nothing exceeds it.
+    pull : float
+        Torque against the positive direction, in motion and at rest [N m].
     efficiency : float
         Efficiency of the gearbox [-], in the direction in which power flows.
-    always_resists : bool
-        Whether the resistance pulls at rest too; else it is Coulomb friction, which holds the
-        drive at rest as long as the torque does not exceed it.
 
     Notes
     -----
-    The load takes L = J_l a + resistance from the gearbox, and the motor gives
+    The load takes L = J_l a + pull + friction sign(w) from the gearbox, and the motor gives
     T = J_m a + L / efficiency where power flows to the load (L w >= 0), J_m a + L * efficiency
     where it flows back: the equation of `FollowerDrive`, solved for the acceleration. T rises
     with a, so that there is exactly one solution; at rest it is standstill for all torques
@@ -63,30 +61,43 @@ class RigidDrive:
 
     motor_inertia: float
     load_inertia: float
-    resistance: float = 0.0
+    friction: float = 0.0
+    pull: float = 0.0
     efficiency: float = 1.0
-    always_resists: bool = False
 
     @classmethod
-    def of(cls, drive: FollowerDrive) -> RigidDrive:
+    def of(cls, drive: FollowerDrive, position: float = 0.0, shaft_angle: float = UNKNOWN,
+           velocity: float = 0.0, ahead: float = 0.0) -> RigidDrive:
         """
-        Reduce a drive to its motor shaft.
+        Reduce a drive to its motor shaft, at a place and a velocity of its load.
 
         Parameters
         ----------
         drive : FollowerDrive
             The drive.
+        position : float
+            Position of the axis [unit].
+        shaft_angle : float
+            Angle of the master shaft [rad]; see `FollowerDrive.law`.
+        velocity : float
+            Of the motor shaft [rad/s].
+        ahead : float
+            How long the velocity will have changed [s] when what depends on it is to be right:
+            half a step, for a mean over the step.
 
         Returns
         -------
         RigidDrive
-            With the same torque for the same motion.
+            With the same torque for the same motion there.
 
         """
+        inertia, centripetal, damping, pull, friction = drive.law(position, shaft_angle)
         ratio = drive.gear_ratio
-        return cls(drive.motor_inertia, drive.load_inertia / ratio ** 2,
-                   drive.resistance_force * drive.radius / ratio, drive.efficiency,
-                   drive.always_resists)
+        damping /= ratio * ratio
+        swept = (centripetal / ratio ** 3 * velocity + damping) * velocity
+        # D (w + a t) is an inertia D t and a pull D w: implicit, so that no damping is too large
+        return cls(drive.motor_inertia, inertia / ratio ** 2 + damping * ahead, friction / ratio,
+                   pull / ratio + swept, drive.efficiency)
 
     def torque(self, velocity: float, acceleration: float) -> float:
         """
@@ -103,8 +114,8 @@ class RigidDrive:
             Torque of the motor [N m].
 
         """
-        sense = 1.0 if self.always_resists else (velocity > 0.0) - (velocity < 0.0)
-        load = self.load_inertia * acceleration + self.resistance * sense
+        sense = (velocity > 0.0) - (velocity < 0.0)
+        load = self.load_inertia * acceleration + self.pull + self.friction * sense
         through = load / self.efficiency if load * velocity >= 0.0 else load * self.efficiency
         return self.motor_inertia * acceleration + through
 
@@ -127,7 +138,7 @@ class RigidDrive:
         """
         if velocity != 0.0:
             return self._moving(torque, 1.0 if velocity > 0.0 else -1.0)
-        least = (_ROUNDING * (abs(torque) + self.resistance)
+        least = (_ROUNDING * (abs(torque) + self.friction + abs(self.pull))
                  / (self.motor_inertia + self.load_inertia))
         if (forwards := self._moving(torque, 1.0)) > least:
             return forwards
@@ -136,7 +147,7 @@ class RigidDrive:
 
     def _moving(self, torque: float, sense: float) -> float:
         """Solve for the acceleration of a drive that moves, or begins to, in a given sense."""
-        resistance = self.resistance if self.always_resists else self.resistance * sense
+        resistance = self.pull + self.friction * sense
         share = self.efficiency
         driven = ((torque * share - resistance)
                   / (self.load_inertia + self.motor_inertia * share))
@@ -163,10 +174,12 @@ class RigidDrive:
         """
         acceleration = self.acceleration(torque, velocity)
         moving = velocity if velocity != 0.0 else acceleration
-        if self.always_resists or moving != 0.0:
-            sense = 1.0 if self.always_resists or moving > 0.0 else -1.0
-            return self.load_inertia * acceleration + self.resistance * sense
-        return torque * self.efficiency  # held by friction
+        if moving != 0.0:
+            sense = 1.0 if moving > 0.0 else -1.0
+            return self.load_inertia * acceleration + self.pull + self.friction * sense
+        # held, by friction of the load or in the gearbox
+        least, most = self.pull - self.friction, self.pull + self.friction
+        return min(max(torque * self.efficiency, least), most)
 
     def move(self, position: float, velocity: float, torque: float, time: float) -> Move:
         """

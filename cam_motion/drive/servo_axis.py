@@ -13,6 +13,7 @@ import math
 from typing import NamedTuple
 
 from cam_motion.drive.inverse import DriveState, FollowerDrive
+from cam_motion.drive.load import Spring
 from cam_motion.drive.rigid_drive import RigidDrive
 from cam_motion.drive.servo_loop import ServoLoop
 from cam_motion.drive.servo_motor import ServoMotor
@@ -26,6 +27,8 @@ SUBSTEP_NS = 250_000
 COARSEST = 0.5
 """Largest product of substep and velocity gain over inertia [-]; at 2 the loop is unstable."""
 
+STIFFEST = 1.0
+"""Largest product of substep and natural frequency on springs [-]; at 2 it is unstable."""
 
 BRAKING_SHARE = 0.5
 """Share of the peak torque with which a large position error is taken to be braked."""
@@ -79,6 +82,10 @@ class ServoAxis:
     stands for the period belongs. So two streams of setpoints at different rates with the same
     motion between them give the same motion of the axis at common times, to rounding.
 
+    What the parts of a load take changes with place, velocity and shaft angle. It stands for one
+    period too, at the place where half a period at the present velocity leads: of order two, and
+    without gain or loss of energy in a spring.
+
     A large position error is taken away no faster than half of the peak torque can brake, or the
     axis would overrun its set position after every overload. The velocity asked for is limited
     to the largest speed of the motor; while it is, no acceleration is fed forward. The torque is
@@ -96,6 +103,7 @@ class ServoAxis:
     def __init__(self, drive: FollowerDrive, motor: ServoMotor, loop: ServoLoop,
                  substep_ns: int = SUBSTEP_NS, thermal_time: float = 60.0) -> None:
         """Stand at 0 at the beginning of time."""
+        self._drive, self._loaded = drive, bool(drive.parts)
         self._rigid = RigidDrive.of(drive)
         self._motor, self._loop = motor, loop
         self._substep_ns = substep_ns
@@ -107,6 +115,13 @@ class ServoAxis:
         if not inertia > 0.0:
             raise ConfigurationError([Problem(
                 'motor_inertia', drive.motor_inertia, 'a servo drive needs an inertia to move')])
+        stiffness = sum(part.stiffness for part in drive.parts if isinstance(part, Spring))
+        swing = math.sqrt(stiffness / inertia) / self._scale  # natural frequency [rad/s]
+        if swing * self._substep > STIFFEST:
+            raise ConfigurationError([Problem(
+                'substep', self._substep, f'must be at most {STIFFEST / swing:.3g} s for springs '
+                f'of {stiffness:.6g} N/m on {inertia:.6g} kg m²',
+                'a shorter substep or softer springs')])
         if loop.velocity_gain / inertia * self._substep > COARSEST:
             most = COARSEST * inertia / loop.velocity_gain
             raise ConfigurationError([Problem(
@@ -138,6 +153,8 @@ class ServoAxis:
         self._velocity = at.velocity * self._scale
         self._integral = 0.0
         self._saturated = False
+        if self._loaded:
+            self._rigid = self._load_at(at.position, at.shaft_angle, self._velocity, 0.0)
         self._torque, _ = self._limited(
             self._rigid.torque(self._velocity, at.acceleration * self._scale))
         self.reset_tally()
@@ -208,7 +225,8 @@ class ServoAxis:
         """
         if self._rest is not None and time_ns > self.time_ns:
             self._integrate(self._rest, time_ns)
-            self._last = Setpoint(time_ns, *self._rest.at(time_ns)[:3])
+            self._last = Setpoint(time_ns, *self._rest.at(time_ns)[:3],
+                                  self._rest.shaft_angle(time_ns))
         return self.state()
 
     def state(self) -> ServoState:
@@ -250,6 +268,10 @@ class ServoAxis:
         loop, scale, half = self._loop, self._scale, 0.5 * self._substep
         wanted = motion.at(self.time_ns)
         set_velocity = wanted.velocity * scale
+        if self._loaded:
+            shaft_angle = motion.shaft_angle(self.time_ns + self._substep_ns // 2)
+            self._rigid = self._load_at((self._position + half * self._velocity) / scale,
+                                        shaft_angle, self._velocity, half)
         error = wanted.position * scale - self._position
         self._error = error / scale
         asked = loop.velocity_feed_forward * set_velocity + self._approach(error)
@@ -260,8 +282,12 @@ class ServoAxis:
             forward = self._rigid.torque(asked, 0.0)
         else:
             rate, jerk = wanted.acceleration * scale, wanted.jerk * scale
-            forward = self._rigid.torque(
-                set_velocity + half * (rate + 0.5 * half * jerk), rate + half * jerk)
+            middle = set_velocity + half * (rate + 0.5 * half * jerk)
+            rigid = self._rigid
+            if self._loaded:
+                ahead = half * (wanted.velocity + 0.5 * half * wanted.acceleration)
+                rigid = self._load_at(wanted.position + ahead, shaft_angle, middle, 0.0)
+            forward = rigid.torque(middle, rate + half * jerk)
         deviation = asked - self._velocity
         torque = (loop.torque_feed_forward * forward
                   + loop.velocity_gain * (deviation + self._integral))
@@ -271,6 +297,12 @@ class ServoAxis:
         saturated = at_torque_limit or at_speed_limit
         self.tally.note_torque(self._torque, saturated and not self._saturated)
         self._saturated = saturated
+
+    def _load_at(self, position: float, shaft_angle: float, velocity: float, ahead: float,
+                 ) -> RigidDrive:
+        """Reduce the drive at a place; one where the load is not defined changes nothing."""
+        found = RigidDrive.of(self._drive, position, shaft_angle, velocity, ahead)
+        return found if math.isfinite(found.load_inertia + found.pull) else self._rigid
 
     def _approach(self, error: float) -> float:
         """Give the velocity that takes a position error away and can be braked in time."""

@@ -65,7 +65,7 @@ def limit_figures(drive: FollowerDrive, motor: ServoMotor, profile: CamProfile, 
         The figures.
 
     """
-    nodes = cycle_nodes(profile, omega)
+    nodes = cycle_nodes(profile, omega, drive.edges)
     dense, inner = drive.follow_all(*nodes.dense), drive.follow_all(*nodes.inner)
     allowed = motor.peak_torque(dense.motor_velocity)
     mean = float(nodes.weights @ np.abs(inner.motor_velocity)) / nodes.period
@@ -119,7 +119,8 @@ def servo_cycle(servo: ServoAxis, profile: CamProfile, omega: float, rate: float
 
     def setpoint(k: int) -> Setpoint:
         y, slope, bend, _ = profile.sample(k * step)
-        return Setpoint(round(k * _SECOND_NS / rate), y, slope * omega, bend * omega * omega)
+        return Setpoint(round(k * _SECOND_NS / rate), y, slope * omega, bend * omega * omega,
+                        k * step)
 
     servo.start(setpoint(0))
     error = 0.0  # at the end of a cycle

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 NANOSECOND = 1e-9
@@ -20,13 +21,14 @@ class Setpoint(NamedTuple):
     Where an axis shall be, and how it shall move there.
 
     Time on the machine's time base [ns], position, velocity and acceleration [unit, unit/s,
-    unit/s²].
+    unit/s²], and the angle of the master shaft [rad], NaN where it is not known.
     """
 
     time_ns: int
     position: float
     velocity: float = 0.0
     acceleration: float = 0.0
+    shaft_angle: float = math.nan
 
 
 class SetState(NamedTuple):
@@ -89,7 +91,7 @@ class SetMotion:
 
         """
         if time_ns == self.last.time_ns:
-            return SetState(*self.last[1:], 0.0)
+            return SetState(*self.last[1:4], 0.0)
         if time_ns > self.last.time_ns:
             return SetState(self.last.position, 0.0, 0.0, 0.0)
         start, c3, c4, c5 = self.first, self._c3, self._c4, self._c5
@@ -100,6 +102,27 @@ class SetMotion:
             start.velocity + u * (2.0 * half + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5))),
             2.0 * half + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5)),
             6.0 * c3 + u * (24.0 * c4 + u * 60.0 * c5))
+
+    def shaft_angle(self, time_ns: int) -> float:
+        """
+        Look up the angle of the master shaft, which turns steadily between two setpoints.
+
+        Parameters
+        ----------
+        time_ns : int
+            Time on the machine's time base [ns]; after the second setpoint the shaft stands.
+
+        Returns
+        -------
+        float
+            Angle [rad]; NaN where it is not known.
+
+        """
+        first, last = self.first, self.last
+        if time_ns >= last.time_ns:
+            return last.shaft_angle
+        share = (time_ns - first.time_ns) / (last.time_ns - first.time_ns)
+        return first.shaft_angle + share * (last.shaft_angle - first.shaft_angle)
 
 
 def stop_from(start: Setpoint, duration_ns: int) -> Setpoint:
@@ -116,9 +139,11 @@ def stop_from(start: Setpoint, duration_ns: int) -> Setpoint:
     Returns
     -------
     Setpoint
-        Standstill after that time, at the place where the velocity falls to rest by a cubic.
+        Standstill after that time, at the place where the velocity falls to rest by a cubic; the
+        shaft is taken to stand.
 
     """
     time = duration_ns * NANOSECOND
     travel = time * (start.velocity / 2.0 + time * start.acceleration / 12.0)
-    return Setpoint(start.time_ns + duration_ns, start.position + travel)
+    return Setpoint(start.time_ns + duration_ns, start.position + travel,
+                    shaft_angle=start.shaft_angle)

@@ -87,8 +87,8 @@ class FollowerLoad:
         """Work out the load shaft."""
         self.coupling = coupling
         bare = replace(drive, gear_ratio=1.0, efficiency=1.0, motor_inertia=0.0)
-        nodes = cycle_nodes(profile, omega)
-        self.inertia = drive.load_inertia
+        nodes = cycle_nodes(profile, omega, drive.edges)
+        self.inertia = float(np.max(drive.law(nodes.dense[0]).inertia))
         self.period = nodes.period
         self._weights = nodes.weights / nodes.period
         self._dense, self._inner = self._shaft(bare, nodes)

@@ -22,6 +22,7 @@ from cam_motion.io.line_parts import guess_line, LINE_SHAFT
 from cam_motion.io.machine import build_drive, build_master
 from cam_motion.io.shaping import load_of
 from cam_motion.motion.shaping_effect import Load
+from cam_motion.runtime.layout import Coupling
 from cam_motion.units import RPM
 
 
@@ -137,6 +138,9 @@ def _of_axis(axis: CoupledAxis, speed: float, drive: FollowerDrive | None,
                     (before.law.ends[1], after.law.ends[0]), profile, abs(speed), index,
                     coupling.scale, axis.limits, swings, drive, segment.law, axis.layout, cam))
             start_deg = segment.end_deg
-    # several cams at once: only their sum is what the drive and the limits see
-    alone = len(axis.layout.active) == 1
+    # several cams at once: only their sum is what the drive and the limits see; and what the
+    # parts of a load take depends on the place too, which a coupling changes
+    alone = len(axis.layout.active) == 1 and not (
+        drive is not None and drive.parts
+        and axis.layout.couplings[axis.layout.active[0]] != Coupling())
     return found if alone else [replace(each, drive=None) for each in found]

@@ -21,14 +21,10 @@ from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import cam_disc_parameters as tables
 from cam_motion.io.axis import build_axis, split_below, Values
 from cam_motion.io.cam_disc_load import FAST, is_bearable, LARGEST_FORCE, load_part
-from cam_motion.io.cam_drive_config import (
-    build_cam_drive,
-    cam_on_shaft,
-    CamDriveSettings,
-    lever_problems,
-)
+from cam_motion.io.cam_drive_config import build_cam_drive, cam_on_shaft, CamDriveSettings
 from cam_motion.io.cam_drive_parameters import part_names
 from cam_motion.io.line_parts import LINE_SHAFT
+from cam_motion.io.load_config import lever_problems
 from cam_motion.io.parameters import check_values, MASTER_SHAFT
 from cam_motion.mechanism.cam_disc import CamDisc, CLOCKWISE, COUNTERCLOCKWISE
 from cam_motion.mechanism.cam_flat import SwingingFlat, TranslatingFlat
@@ -213,7 +209,7 @@ def _build_disc(name: str, given: Values, sections: Mapping[str, Values]) -> Cam
         except ConfigurationError as error:
             problems += [problem.below(part) for problem in error.problems]
     if profile is not None and len(parts) == len(below):
-        problems += lever_problems(list(below), parts, profile)
+        problems += lever_problems(dict(zip(below, parts)), profile)
     keyway = _keyway(values, problems)
     if problems or profile is None or follower is None or limits is None:
         raise ConfigurationError(problems)

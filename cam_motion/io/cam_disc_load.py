@@ -13,7 +13,7 @@ from cam_motion.drive.load import Friction, Part, Process, Spring, TranslatingMa
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io import cam_disc_parameters as tables
 from cam_motion.io.axis import Values
-from cam_motion.io.cam_drive_config import build_part
+from cam_motion.io.load_config import build_part
 from cam_motion.io.parameters import check_values
 from cam_motion.mechanism.cam_force import ContactForce
 from cam_motion.units import DEGREE

@@ -15,24 +15,16 @@ from typing import Any
 
 from cam_motion.drive.cam_drive import CamDrive
 from cam_motion.drive.gearbox import Gearbox
-from cam_motion.drive.load import (
-    Friction,
-    Lever,
-    Part,
-    Process,
-    RotatingInertia,
-    Spring,
-    TranslatingMass,
-)
 from cam_motion.drive.motor import InductionMotor, KlossMotor
 from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.io.axis import CoupledAxis, split_below
-from cam_motion.io.cam_drive_parameters import CAM_DRIVE, KIND, part_names, PARTS
+from cam_motion.io.axis import CoupledAxis
+from cam_motion.io.cam_drive_parameters import CAM_DRIVE, part_names
+from cam_motion.io.load_config import lever_problems, take_parts
 from cam_motion.io.parameters import check_values
 from cam_motion.io.tracks import take_tracks, TrackSettings
 from cam_motion.motion.profile import CamProfile
 from cam_motion.runtime.layout import Coupling
-from cam_motion.units import DEGREE, RPM
+from cam_motion.units import RPM
 
 
 @dataclass(frozen=True)
@@ -102,24 +94,13 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
         With every problem, paths relative to the node.
 
     """
-    names = part_names(given)
-    given, tracks, problems = take_tracks(given, CAM_DRIVE, names)
-    own, below = split_below(given, names)
+    given, tracks, problems = take_tracks(given, CAM_DRIVE, part_names(given))
+    own, parts, in_parts = take_parts(given, CAM_DRIVE)
     values, wrong = check_values(CAM_DRIVE, own)
-    problems += wrong
-    taken = {spec.name.partition('.')[0] for spec in CAM_DRIVE}
-    problems += [
-        Problem('load', part, 'every part has a name of its own, which is no parameter')
-        for part in names if part in taken or (values['load'] or []).count(part) > 1]
-    parts: list[Part] = []
-    for part in names:
-        try:
-            parts.append(build_part(below[part]))
-        except ConfigurationError as error:
-            problems += [problem.below(part) for problem in error.problems]
+    problems += wrong + in_parts
     profile = profiles.get(values['axis'] or '')
     if not problems and profile is not None:
-        problems += lever_problems(names, parts, profile)
+        problems += lever_problems(parts, profile)
     if problems or profile is None:
         # an axis that is not there is the machine's own problem
         raise ConfigurationError(problems)
@@ -136,13 +117,14 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
     rated, brake = values['motor.rated_rpm'], values['brake.torque']
     return CamDriveSettings(
         name, values['axis'],
-        CamDrive(profile, parts, motor, gearbox, values['flywheel'], nominal),
+        CamDrive(profile, tuple(parts.values()), motor, gearbox, values['flywheel'], nominal),
         gearbox.ratio * nominal if rated is None else rated * RPM,
         values['base_radius'], values['roller_radius'],
         motor.breakdown_torque if brake is None else brake, values, tracks)
 
 
-def cam_on_shaft(axis: CoupledAxis) -> CamProfile:
+def cam_on_shaft(axis: CoupledAxis, why: str = 'the cam of this drive sits on its shaft',
+                 ) -> CamProfile:
     """
     Give the cam by which an axis loads the shaft.
 
@@ -150,6 +132,8 @@ def cam_on_shaft(axis: CoupledAxis) -> CamProfile:
     ----------
     axis : CoupledAxis
         The axis.
+    why : str
+        Why its coupling matters.
 
     Returns
     -------
@@ -166,85 +150,10 @@ def cam_on_shaft(axis: CoupledAxis) -> CamProfile:
     if axis.values['follows'] != 'shaft' or len(layout.active) > 1 or any(
             layout.couplings[cam] != Coupling() for cam in layout.active):
         raise ConfigurationError([Problem(
-            'axis', axis.name, 'the cam of this drive sits on its shaft: one cam must follow the '
+            'axis', axis.name, f'{why}: one cam must follow the '
             'shaft with ratio 1 and scale 1, without phase and offset',
             'put the phase into its segments, or name another axis')])
     return axis.profile
-
-
-def build_part(given: Mapping[str, Any]) -> Part:
-    """
-    Check the parameters of a part of a load and build it.
-
-    Parameters
-    ----------
-    given : Mapping[str, Any]
-        Parameters by name.
-
-    Returns
-    -------
-    Part
-        The part.
-
-    Raises
-    ------
-    ConfigurationError
-        With every problem, paths relative to the part.
-
-    """
-    kind = given.get('type')
-    if not isinstance(kind, str) or kind not in PARTS:
-        raise ConfigurationError(check_values((KIND,), {'type': kind} if kind else {})[1])
-    values, problems = check_values(PARTS[kind], given)
-    window = values.get('window_deg')
-    if window is not None and not problems and not (
-            len(window) == 2 and 0.0 <= window[0] < window[1] <= 360.0):
-        problems.append(Problem('window_deg', window, 'must be two rising angles from 0 to 360'))
-    if problems:
-        raise ConfigurationError(problems)
-    if kind == 'inertia':
-        return RotatingInertia(values['inertia'])
-    if kind == 'mass':
-        return TranslatingMass(values['mass'], values['gravity'])
-    if kind == 'spring':
-        return Spring(values['stiffness'], values['preload'])
-    if kind == 'friction':
-        return Friction(values['viscous'], values['coulomb'])
-    first, last = (angle * DEGREE for angle in values['window_deg'])
-    if kind == 'process':
-        return Process(values['force'], values['moment'], (first, last))
-    return Lever(values['inertia'], values['arm'], values['height'], values['moment'],
-                 (first, last))
-
-
-def lever_problems(names: list[str], parts: list[Part], profile: CamProfile) -> list[Problem]:
-    """
-    Check that the slider stays within reach of every lever.
-
-    Parameters
-    ----------
-    names : list[str]
-        Names of the parts.
-    parts : list[Part]
-        The parts.
-    profile : CamProfile
-        Motion of the follower [m].
-
-    Returns
-    -------
-    list[Problem]
-        One for each lever out of reach.
-
-    """
-    low, high = (peak.value for peak in profile.curve.extremes(0))
-    return [
-        Problem(f'{name}.height', part.height,
-                f'the slider must stay within the arm of {part.arm:g} m: it would stand at '
-                f'{part.height - high:.6g} to {part.height - low:.6g} m',
-                'a longer arm, another height or a smaller lift')
-        for name, part in zip(names, parts) if isinstance(part, Lever)
-        and max(abs(part.height - low), abs(part.height - high)) >= part.arm
-    ]
 
 
 def _motor(values: Mapping[str, Any]) -> InductionMotor | KlossMotor:

@@ -68,7 +68,8 @@ _WINDOW = ParameterSpec('window_deg', 'double_list', [0.0, 360.0],
                         'First and last shaft angle at which it acts.', 'deg')
 
 PARTS: dict[str, tuple[ParameterSpec, ...]] = {
-    'inertia': (KIND, _number('inertia', 'Inertia on the cam shaft.', 'kg m²', least=0.0)),
+    'inertia': (KIND, _number('inertia', 'Inertia on the cam or load shaft.', 'kg m²',
+                              least=0.0)),
     'mass': (KIND, _number('mass', 'Mass that moves with the follower.', 'kg', least=0.0),
              _number('gravity', 'Free fall along the follower.', 'm/s²', GRAVITY)),
     'spring': (KIND, _number('stiffness', 'Stiffness.', 'N/m', least=0.0),
@@ -76,15 +77,20 @@ PARTS: dict[str, tuple[ParameterSpec, ...]] = {
     'friction': (KIND, _number('viscous', 'Viscous friction.', 'N s/m', 0.0, least=0.0),
                  _number('coulomb', 'Coulomb friction.', 'N', 0.0, least=0.0)),
     'process': (KIND, _number('force', 'Force against the rise of the follower.', 'N', 0.0),
-                _number('moment', 'Moment on the cam shaft against turning forwards.', 'N m',
-                        0.0), _WINDOW),
+                _number('moment', 'Moment on the cam or load shaft against turning forwards.',
+                        'N m', 0.0), _WINDOW),
     'lever': (KIND, _number('inertia', 'Inertia about the bearing.', 'kg m²', least=0.0),
               _number('arm', 'Length.', 'm', above=0.0),
               _number('height', 'Height of the slider over the bearing at s = 0.', 'm'),
               _number('moment', 'Moment against the lever.', 'N m', 0.0),
               _WINDOW),
 }
-"""Parameters of the parts of a load, by their type."""
+"""
+Parameters of the parts of a load, by their type.
+
+For a drive that follows an axis the load shaft stands for the cam shaft, and the axis for the
+follower; windows lie over the angle of the master shaft.
+"""
 
 
 def cam_drive_table(given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
@@ -102,9 +108,27 @@ def cam_drive_table(given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
         `CAM_DRIVE`, and below the names of tracks and parts what these have.
 
     """
-    return (*CAM_DRIVE, *track_table(given, of_axis=False), *(
+    return (*CAM_DRIVE, *track_table(given, of_axis=False), *part_table(given))
+
+
+def part_table(given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
+    """
+    List the parameters of the parts of a load.
+
+    Parameters
+    ----------
+    given : Mapping[str, Any]
+        What the drive has been given, by flat name.
+
+    Returns
+    -------
+    tuple[ParameterSpec, ...]
+        The table, each name below that of its part.
+
+    """
+    return tuple(
         replace(spec, name=f'{part}.{spec.name}') for part in part_names(given)
-        for spec in PARTS.get(str(given.get(f'{part}.type')), (KIND,))))
+        for spec in PARTS.get(str(given.get(f'{part}.type')), (KIND,)))
 
 
 def part_names(given: Mapping[str, Any]) -> list[str]:

@@ -71,6 +71,9 @@ INTERFACE = (
              'joint_trajectory_controller'),
     Endpoint('drive_sim', 'subscribes', '<axis>/setpoint', _POINT,
              'the axis that it moves; not with mode line_shaft'),
+    Endpoint('drive_sim', 'subscribes', 'shaft', _POINT,
+             'where a part of its load acts in a window of the shaft angle; not with mode '
+             'line_shaft'),
     Endpoint('drive_sim', 'publishes', '~/drive_state', _JOINTS,
              'joints motor and load, with mode line_shaft also shaft: position, velocity, effort '
              '(rad, rad/s, N m)'),

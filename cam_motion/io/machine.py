@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cam_motion.drive.inverse import FollowerDrive
+from cam_motion.drive.load import Part
 from cam_motion.drive.orbit import find_orbit, NoOrbitError
 from cam_motion.drive.servo_motor import ServoMotor
 from cam_motion.errors import ConfigurationError, Problem
@@ -25,9 +26,10 @@ from cam_motion.io.interlocks import build_interlocks, judge, JudgedInterlock, l
 from cam_motion.io.line_parts import guess_line, rival_problems, shaft_drives
 from cam_motion.io.linkage_line import build_linkages_of
 from cam_motion.io.linkage_settings import LinkageSettings
+from cam_motion.io.load_config import lever_problems, take_parts
 from cam_motion.io.parameters import check_values
-from cam_motion.io.servo_config import build_motor, build_servo, SERVO, ServoSettings
-from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO_DRIVE
+from cam_motion.io.servo_config import build_motor, build_servo, ServoSettings
+from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO, SERVO_DRIVE
 from cam_motion.io.tracks import take_tracks, TrackSettings
 from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.runtime.ramp import RampLimits
@@ -134,6 +136,8 @@ class DriveSettings:
         The motor with its limits, where it is given.
     servo : ServoSettings | None
         How it follows with mode `servo`; None for a drive that follows exactly.
+    parts : Mapping[str, Part]
+        The parts of its load by name.
 
     """
 
@@ -142,6 +146,7 @@ class DriveSettings:
     drive: FollowerDrive
     motor: ServoMotor | None = None
     servo: ServoSettings | None = None
+    parts: Mapping[str, Part] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -231,7 +236,10 @@ def build_drive(name: str, given: Values) -> DriveSettings:
 
     """
     follows_as_servo = given.get('mode') == SERVO
-    values, problems = check_values(SERVO_DRIVE if follows_as_servo else FOLLOW_DRIVE, given)
+    table = SERVO_DRIVE if follows_as_servo else FOLLOW_DRIVE
+    own, parts, in_parts = take_parts(given, table)
+    values, problems = check_values(table, own)
+    problems += in_parts
     if problems:
         raise ConfigurationError(problems)
     motor = build_motor(values)
@@ -240,11 +248,11 @@ def build_drive(name: str, given: Values) -> DriveSettings:
         efficiency=values['efficiency'],
         motor_inertia=values['motor_inertia'] + (0.0 if motor is None else motor.inertia),
         load_inertia=values['load_inertia'], resistance_force=values['resistance_force'],
-        always_resists=values['resistance'] == 'always')
+        always_resists=values['resistance'] == 'always', parts=tuple(parts.values()))
     servo = None
     if follows_as_servo and motor is not None:
         servo = build_servo(values, drive, motor)
-    return DriveSettings(name, values['axis'], drive, motor, servo)
+    return DriveSettings(name, values['axis'], drive, motor, servo, parts)
 
 
 def build_machine(sections: Mapping[str, Values]) -> Machine:
@@ -291,6 +299,15 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
             problems.extend(problem.below(name) for problem in error.problems)
         return build_cam_drive(name, given, {axis.name: axis.profile})
 
+    def follow(name: str, given: Values) -> DriveSettings:
+        settings = build_drive(name, given)
+        axis = axes.get(settings.axis)
+        if settings.parts and axis is not None:
+            cam = cam_on_shaft(axis, 'the parts of a load are looked at over the cam itself')
+            if found := lever_problems(settings.parts, cam):
+                raise ConfigurationError(found)
+        return settings
+
     given = sections.get('line', guess_line(sections))
     line, wrong = line_values(given)
     problems += [problem.below('line') for problem in wrong]
@@ -312,7 +329,7 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
         if name in turning:
             cam_drives[name] = build(turn, name, 'drive')
         else:
-            drives[name] = build(build_drive, name, 'drive')
+            drives[name] = build(follow, name, 'drive')
     problems += [
         Problem(f'{name}.axis', followed, 'a drive follows an axis of the line',
                 'known are: ' + ', '.join(axes))

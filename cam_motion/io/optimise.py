@@ -120,16 +120,22 @@ class Movement:
 
     @property
     def load(self) -> Load | None:
-        """Give the torque at the motor for s''; None without a drive that has an inertia."""
+        """
+        Give the torque at the motor for s''.
+
+        None without a drive that has an inertia, and where the load depends on place or speed.
+        """
         drive = self.drive
-        if drive is None or drive.motor_inertia + drive.load_inertia <= 0.0:
+        if drive is None or not drive.is_even:
+            return None
+        law = drive.law(0.0)
+        if drive.motor_inertia + law.inertia <= 0.0:
             return None
         rate = self.scale(2) / drive.radius
-        sense = math.copysign(1.0, self.lift) if drive.always_resists else 1.0
+        against = math.copysign(1.0, self.lift) * law.pull + law.friction
         return Load(
             drive.motor_inertia * drive.gear_ratio * rate,
-            drive.load_inertia * rate / drive.gear_ratio,
-            sense * drive.resistance_force * drive.radius / drive.gear_ratio, drive.efficiency)
+            law.inertia * rate / drive.gear_ratio, against / drive.gear_ratio, drive.efficiency)
 
 
 @dataclass(frozen=True)

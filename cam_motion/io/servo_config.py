@@ -21,9 +21,6 @@ from cam_motion.drive.servo_motor import ServoMotor, TorqueLimit
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.units import RPM, TURN
 
-SERVO = 'servo'
-"""Mode of a drive that follows its axis as a servo motor under a control loop can."""
-
 _NANOSECONDS = 1e9
 _NEEDED = ('inertia', 'rated_rpm', 'max_rpm')
 _PLATE = ('rated_torque', 'peak_torque', 'standstill_torque', 'corner_rpm')
@@ -180,7 +177,11 @@ def build_servo(values: Mapping[str, Any], drive: FollowerDrive, motor: ServoMot
         With every problem, paths relative to the drive.
 
     """
-    inertia = drive.motor_inertia + drive.load_inertia / drive.gear_ratio ** 2
+    inertia = drive.motor_inertia + drive.law(0.0).inertia / drive.gear_ratio ** 2
+    if not math.isfinite(inertia):
+        raise ConfigurationError([Problem(
+            'load', None, 'the gains follow from the inertia at position 0, where it is not '
+            'defined', 'keep the slider within the arm of its lever there')])
     loop = ServoLoop.for_bandwidth(
         values['loop.bandwidth_hz'] * TURN, inertia,
         **{name: values[f'loop.{name}'] for name in (

@@ -9,10 +9,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from cam_motion.io.cam_drive_parameters import part_table
 from cam_motion.io.parameters import AUTOSTART, DRIVE_SIM, ParameterSpec, REQUIRED
+
+SERVO = 'servo'
+"""Mode of a drive that follows its axis as a servo motor under a control loop can."""
 
 
 def _number(name: str, meaning: str, unit: str, default: Any = None, above: float | None = 0.0,
@@ -82,7 +87,11 @@ def _with_motor(spec: ParameterSpec) -> ParameterSpec:
     return spec
 
 
-FOLLOW_DRIVE = (*map(_with_motor, DRIVE_SIM[:-1]), *MOTOR, AUTOSTART)
+_LOAD = ParameterSpec(
+    'load', 'string_list', [], 'Names of further parts of the load, which the load shaft moves, '
+    'as a cam shaft would, with the axis as its follower.')
+
+FOLLOW_DRIVE = (*map(_with_motor, DRIVE_SIM[:-1]), _LOAD, *MOTOR, AUTOSTART)
 """Parameters of a drive that follows its axis exactly; the motor adds its limits to pictures."""
 
 SERVO_DRIVE = (
@@ -91,3 +100,22 @@ SERVO_DRIVE = (
     *(replace(spec, default=REQUIRED) if spec.name in _MUST else spec for spec in MOTOR),
     *LOOP, AUTOSTART)
 """Parameters of a drive that follows its axis as a servo motor under a control loop can."""
+
+
+def follower_table(given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
+    """
+    List the parameters of a drive that follows an axis with those of its parts.
+
+    Parameters
+    ----------
+    given : Mapping[str, Any]
+        What the drive has been given, by flat name.
+
+    Returns
+    -------
+    tuple[ParameterSpec, ...]
+        `SERVO_DRIVE` or `FOLLOW_DRIVE` by its mode, and below the names of parts what these have.
+
+    """
+    own = SERVO_DRIVE if given.get('mode') == SERVO else FOLLOW_DRIVE
+    return (*own, *part_table(given))

@@ -205,7 +205,8 @@ def check_objective(weights: Mapping[str, float], load: Load | None) -> None:
                  for name, weight in weights.items()
                  if not (math.isfinite(weight) and weight > 0.0)]
     problems += [Problem('minimise', name, 'a torque needs a load',
-                         'name an axis with a drive that has an inertia')
+                         'name an axis with a drive that has an inertia, and a load that does '
+                         'not depend on place and speed')
                  for name in weights if name in TORQUES and load is None]
     if not weights:
         problems.append(Problem('minimise', None, 'needs an objective',

@@ -159,6 +159,7 @@ def _effort_of(given: Mapping[str, Any]) -> Effort | None:
         return None  # the drive itself says what is wrong with it
     factor = drive.gear_ratio / drive.radius
 
-    def effort(position: float, velocity: float, acceleration: float) -> float:
-        return float(factor * drive.follow(position, velocity, acceleration).motor_torque)
+    def effort(position: float, velocity: float, acceleration: float, shaft_angle: float) -> float:
+        state = drive.follow(position, velocity, acceleration, shaft_angle)
+        return float(factor * state.motor_torque)
     return effort

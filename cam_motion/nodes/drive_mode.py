@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
+from cam_motion.drive.axis_load import UNKNOWN
 from cam_motion.io.parameters import ParameterSpec
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.managed_node import ManagedNode
@@ -20,8 +21,11 @@ from cam_motion.nodes.shaft_ticker import Listener
 from cam_motion.nodes.time_base import TimeBase
 from cam_motion.nodes.wire import unpack_point
 from cam_motion.runtime.point import Point
+from cam_motion.runtime.shaft_angle import ShaftAngles
 from cam_motion.runtime.ticks import NANOSECONDS
 from trajectory_msgs.msg import JointTrajectoryPoint
+
+_FINDING = 50  # setpoints that may come before the shaft is heard, while nodes find each other
 
 
 class DriveMode:
@@ -111,6 +115,17 @@ class DriveMode:
 
         """
 
+    def note_shaft(self, point: Point) -> None:
+        """
+        Hear a point of the shaft, before the setpoint that answers it.
+
+        Parameters
+        ----------
+        point : Point
+            Angle, speed and acceleration of the shaft.
+
+        """
+
     def deactivate(self) -> None:
         """Cease to work; a drive that others follow leaves a hold point behind."""
 
@@ -157,6 +172,8 @@ class SetpointMode(DriveMode):
         self.answered = 0
         self.refused = 0
         self._time = TimeBase(node)
+        self._angles: ShaftAngles | None = None  # for a load that depends on them
+        self._without_angle = 0  # setpoints, by now without a break
 
     def respond(self, setpoint: Point, stamp_ns: int) -> None:
         """
@@ -172,7 +189,7 @@ class SetpointMode(DriveMode):
         """
         raise NotImplementedError
 
-    def listen_to(self, axis: str) -> None:
+    def listen_to(self, axis: str, with_shaft: bool = False) -> None:
         """
         Follow an axis from now on.
 
@@ -180,10 +197,16 @@ class SetpointMode(DriveMode):
         ----------
         axis : str
             Its name.
+        with_shaft : bool
+            Whether the angle of the shaft counts too, as for a force in a window of it.
 
         """
         self.axis = axis
+        self._angles = ShaftAngles() if with_shaft else None
         if self.own_process:
+            if with_shaft:
+                self.node.make_subscription(
+                    JointTrajectoryPoint, 'shaft', self._on_shaft, SETPOINTS, raw=True)
             self.node.make_subscription(
                 JointTrajectoryPoint, f'{axis}/setpoint', self._on_setpoint, SETPOINTS, raw=True)
 
@@ -209,6 +232,60 @@ class SetpointMode(DriveMode):
             self.node.set_state('following')
         self.respond(setpoint, self._time.stamp(time_ns))
         self.answered += 1
+
+    def note_shaft(self, point: Point) -> None:
+        """
+        Hear a point of the shaft.
+
+        Parameters
+        ----------
+        point : Point
+            Angle, speed and acceleration of the shaft.
+
+        """
+        if self._angles is not None:
+            self._angles.note(point)
+
+    def shaft_angle(self, setpoint: Point) -> float:
+        """
+        Look up the angle of the shaft that a setpoint answers.
+
+        Parameters
+        ----------
+        setpoint : Point
+            The setpoint.
+
+        Returns
+        -------
+        float
+            Angle [rad]; NaN where it does not count, or no shaft is heard.
+
+        """
+        if self._angles is None:
+            return UNKNOWN
+        found = self._angles.at(setpoint.sec * NANOSECONDS + setpoint.nanosec)
+        if found == found:
+            self._without_angle = 0
+            return found
+        self._without_angle += 1
+        if self._without_angle > _FINDING:
+            self.node.get_logger().warning(
+                'the angle of the shaft is not known: the parts of the load that act in a window '
+                'of it do not act', throttle_duration_sec=10.0)
+        return UNKNOWN
+
+    @property
+    def lost(self) -> dict[str, str]:
+        """Say that a part of the load does not act, as it should, where that is so."""
+        if self._without_angle <= _FINDING:
+            return {}
+        return {'reason': 'the angle of the shaft is not known: what acts in a window of it does '
+                          'not act'}
+
+    def _on_shaft(self, data: bytes) -> None:
+        point = unpack_point(data)
+        if point is not None:
+            self.note_shaft(point)
 
     def _on_setpoint(self, data: bytes) -> None:
         setpoint = unpack_point(data)

@@ -14,7 +14,7 @@ from typing import Any
 
 from cam_motion.io.line_parts import LINE_SHAFT
 from cam_motion.io.parameters import ParameterSpec
-from cam_motion.io.servo_config import SERVO
+from cam_motion.io.servo_parameters import SERVO
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.drive_mode import DriveMode
 from cam_motion.nodes.follow_mode import FollowMode
@@ -128,6 +128,19 @@ class DriveSim(ManagedNode):
         """
         if self._mode is not None:
             self._mode.answer(setpoint)
+
+    def note_shaft(self, point: Point) -> None:
+        """
+        Hear a point of the shaft, before the setpoint that answers it.
+
+        Parameters
+        ----------
+        point : Point
+            Angle, speed and acceleration of the shaft.
+
+        """
+        if self._mode is not None:
+            self._mode.note_shaft(point)
 
     def deactivate(self) -> None:
         """Cease to work."""

@@ -15,7 +15,7 @@ from typing import Any
 from cam_motion.drive.inverse import DriveState
 from cam_motion.io.machine import build_drive
 from cam_motion.io.parameters import ParameterSpec
-from cam_motion.io.servo_parameters import FOLLOW_DRIVE
+from cam_motion.io.servo_parameters import follower_table
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.drive_mode import SetpointMode
 from cam_motion.nodes.qos import SETPOINTS
@@ -33,7 +33,7 @@ class FollowMode(SetpointMode):
     @classmethod
     def table(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
         """List the parameters of a drive that follows; see `DriveMode.table`."""
-        return FOLLOW_DRIVE
+        return follower_table(given)
 
     def configure(self, values: Mapping[str, Any]) -> None:
         """
@@ -51,7 +51,7 @@ class FollowMode(SetpointMode):
         self._peak_torque = 0.0
         self._last: DriveState | None = None
         self._states = self.node.make_publisher(JointState, '~/drive_state', SETPOINTS)
-        self.listen_to(settings.axis)
+        self.listen_to(settings.axis, with_shaft=bool(settings.drive.edges))
 
     def respond(self, setpoint: Point, stamp_ns: int) -> None:
         """
@@ -65,7 +65,8 @@ class FollowMode(SetpointMode):
             When it was due, in the node's time [ns].
 
         """
-        state = self._drive.follow(setpoint.position, setpoint.velocity, setpoint.acceleration)
+        state = self._drive.follow(setpoint.position, setpoint.velocity, setpoint.acceleration,
+                                   self.shaft_angle(setpoint))
         self._last = state
         self._peak_torque = max(self._peak_torque, abs(state.motor_torque))
         self._states.publish(self._codec.pack(
@@ -86,9 +87,9 @@ class FollowMode(SetpointMode):
         """
         if self._last is None:
             return diagnostics.OK, {}
-        return diagnostics.WARN if self.refused else diagnostics.OK, {
+        return diagnostics.WARN if self.refused or self.lost else diagnostics.OK, {
             'states': self.answered, 'refused_points': self.refused,
             'motor_torque': self._last.motor_torque,
             'motor_speed_rpm': self._last.motor_velocity / RPM,
-            'peak_motor_torque': self._peak_torque,
+            'peak_motor_torque': self._peak_torque, **self.lost,
         }

@@ -132,6 +132,9 @@ def make_line(**options: Any) -> list[ManagedNode]:
     if isinstance(master, MasterShaft):
         master.sections = lambda: {
             name: own_values(values_of(node)) for name, node in axes.items()}
+    # a load that acts in a window of the shaft angle: the shaft is heard before the setpoints
+    master.listeners += [drive.note_shaft for drive in drives
+                         if drive is not master and values_of(drive).get('load')]
     for axis in axes.values():
         source = axes.get(values_of(axis).get('follows', ''), master)
         source.listeners.append(axis.answer)

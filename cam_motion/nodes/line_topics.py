@@ -15,7 +15,7 @@ from typing import NamedTuple
 from cam_motion.io.axis import Values
 from cam_motion.io.interlocks import line_values
 from cam_motion.io.line_parts import guess_line, shaft_drives
-from cam_motion.io.servo_config import SERVO
+from cam_motion.io.servo_parameters import SERVO
 from cam_motion.io.tracks import track_names
 from cam_motion.nodes.diagnostics import TOPIC as DIAGNOSTICS
 from cam_motion.nodes.qos import LATCHED, SETPOINTS

@@ -16,7 +16,7 @@ from cam_motion.drive.servo_axis import ServoState
 from cam_motion.drive.set_motion import Setpoint
 from cam_motion.io.machine import build_drive
 from cam_motion.io.parameters import ParameterSpec
-from cam_motion.io.servo_parameters import SERVO_DRIVE
+from cam_motion.io.servo_parameters import follower_table
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.drive_mode import SetpointMode
 from cam_motion.nodes.follow_mode import JOINTS
@@ -52,7 +52,7 @@ class ServoMode(SetpointMode):
     @classmethod
     def table(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
         """List the parameters of a servo drive; see `DriveMode.table`."""
-        return SERVO_DRIVE
+        return follower_table(given)
 
     def configure(self, values: Mapping[str, Any]) -> None:
         """
@@ -71,7 +71,7 @@ class ServoMode(SetpointMode):
         self._codec = JointStateCodec(JOINTS, with_effort=True)
         self._states = self.node.make_publisher(JointState, '~/drive_state', SETPOINTS)
         self._actual = self.node.make_publisher(JointTrajectoryPoint, '~/actual', SETPOINTS)
-        self.listen_to(built.axis)
+        self.listen_to(built.axis, with_shaft=bool(built.drive.edges))
 
     def activate(self) -> None:
         """Wait for setpoints; the first one is where the drive stands."""
@@ -103,7 +103,8 @@ class ServoMode(SetpointMode):
 
         """
         time_ns = setpoint.sec * NANOSECONDS + setpoint.nanosec
-        to = Setpoint(time_ns, setpoint.position, setpoint.velocity, setpoint.acceleration)
+        to = Setpoint(time_ns, setpoint.position, setpoint.velocity, setpoint.acceleration,
+                      self.shaft_angle(setpoint))
         if self._last is None:
             state = self._servo.start(to)
         elif time_ns < self._last.time_ns - NANOSECONDS:
@@ -180,10 +181,11 @@ class ServoMode(SetpointMode):
             'saturations': tally.saturations,
             'saturated_s': tally.saturated_ns / NANOSECONDS,
             'dropped_s': tally.dropped_ns / NANOSECONDS,
-            'regenerated_energy': tally.regenerated_energy,
+            'regenerated_energy': tally.regenerated_energy, **self.lost,
         }
         current = self._settings.motor.current(shafts.motor_torque)
         if current is not None:
             values['motor_current'] = current
-        bad = self.refused or tally.saturations or tally.dropped_ns or tally.thermal_load > 1.0
+        bad = (self.refused or self.lost or tally.saturations or tally.dropped_ns
+               or tally.thermal_load > 1.0)
         return diagnostics.WARN if bad else diagnostics.OK, values

@@ -29,8 +29,8 @@ from cam_motion.runtime.ticks import NANOSECONDS
 from cam_motion.runtime.time_relation import TimeRelation
 from trajectory_msgs.msg import JointTrajectory
 
-Effort = Callable[[float, float, float], float]
-"""Gives the effort that position, velocity and acceleration of an axis take."""
+Effort = Callable[[float, float, float, float], float]
+"""Gives the effort that position, velocity and acceleration of an axis at a shaft angle take."""
 
 
 class TrajectoryCodec:
@@ -98,7 +98,7 @@ class TrajectoryCodec:
         if count not in self._layouts:
             self._layouts[count] = self._layout(count)
         values: list[int | float | bytes] = []
-        for k, (time, position, velocity, acceleration) in enumerate(points):
+        for k, (time, position, velocity, acceleration, _) in enumerate(points):
             values += (1, position, 1, velocity, 1, acceleration)
             values += (1, efforts[k]) if efforts else (0,)
             values += divmod(round(time * NANOSECONDS), NANOSECONDS)
@@ -127,7 +127,7 @@ class TrajectoryOutput:
         Name of the joint.
     stop_limits : RampLimits
         Limits of the stop.
-    effort : Callable[[float, float, float], float] | None
+    effort : Callable[[float, float, float, float], float] | None
         What a motion takes, where a drive is known.
 
     Attributes

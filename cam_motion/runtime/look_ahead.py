@@ -33,13 +33,14 @@ class AheadPoint(NamedTuple):
     The setpoint of an axis at a time to come.
 
     The time [s] counts from the shaft's present state; position, velocity and acceleration are
-    in the unit of the axis, per s, per s².
+    in the unit of the axis, per s, per s²; the angle is that of the shaft [rad].
     """
 
     time: float
     position: float
     velocity: float
     acceleration: float
+    shaft_angle: float = math.nan
 
 
 def shaft_ahead(state: ShaftState, jerk: float, horizon: float) -> ShaftMotion:
@@ -185,7 +186,7 @@ def look_ahead(motion: Motion, shaft: ShaftMotion, times: Sequence[float]) -> li
 def _point(motion: Motion, shaft: ShaftMotion, t: float) -> AheadPoint:
     phi, omega, alpha = shaft.state(t)
     y, slope, bend, _ = motion.sample(phi)
-    return AheadPoint(t, y, slope * omega, bend * omega * omega + slope * alpha)
+    return AheadPoint(t, y, slope * omega, bend * omega * omega + slope * alpha, phi)
 
 
 def _joint_times(motion: Motion, shaft: ShaftMotion, start: float, end: float) -> list[float]:

@@ -24,10 +24,23 @@ DRIVES = st.builds(
     load_inertia=st.floats(0.0, 5.0), resistance_force=st.floats(0.0, 1e3),
     always_resists=st.booleans())
 RIGID = st.builds(RigidDrive.of, DRIVES)
+PULLED = st.builds(  # by a spring or a weight, and with friction at once
+    RigidDrive, st.floats(1e-4, 1.0), st.floats(0.0, 5.0), st.floats(0.0, 100.0),
+    st.floats(-100.0, 100.0), st.floats(0.3, 1.0))
 SPEEDS = st.floats(-100.0, 100.0)
 RATES = st.floats(-1e4, 1e4)
 TORQUES = st.floats(-300.0, 300.0)
 TIMES = st.floats(1e-5, 0.1)
+
+
+def most(drive):
+    """Give the largest torque by which a load resists."""
+    return drive.friction + abs(drive.pull)
+
+
+def behind_losses(drive, torque):
+    """Give the torque of the motor against a torque that resists, or drives if negative."""
+    return torque / drive.efficiency if torque > 0.0 else torque * drive.efficiency
 
 
 @given(drive=DRIVES, velocity=SPEEDS, rate=RATES)
@@ -43,20 +56,19 @@ def test_the_torque_is_that_of_the_drive_it_is_reduced_from(drive, velocity, rat
         state.load_torque, rel=1e-5)
 
 
-@given(drive=RIGID, velocity=SPEEDS.filter(bool), rate=RATES)
+@given(drive=RIGID | PULLED, velocity=SPEEDS.filter(bool), rate=RATES)
 def test_the_acceleration_is_the_one_that_the_torque_was_computed_for(drive, velocity, rate):
     back = drive.acceleration(drive.torque(velocity, rate), velocity)
-    assert back == pytest.approx(rate, rel=ROUNDING, abs=1e-9 * (1.0 + drive.resistance / (
+    assert back == pytest.approx(rate, rel=ROUNDING, abs=1e-9 * (1.0 + most(drive) / (
         drive.motor_inertia + drive.load_inertia)))
 
 
-@given(drive=RIGID, torque=TORQUES)
+@given(drive=RIGID | PULLED, torque=TORQUES)
 def test_at_rest_the_drive_starts_only_with_more_than_what_holds_it(drive, torque):
     rate = drive.acceleration(torque, 0.0)
-    lost = drive.efficiency
-    forwards = drive.resistance / lost
-    backwards = drive.resistance * lost if drive.always_resists else -drive.resistance / lost
-    slack = 1e-9 * (drive.resistance + abs(torque))
+    forwards, backwards = (sense * behind_losses(drive, sense * drive.pull + drive.friction)
+                           for sense in (1.0, -1.0))
+    slack = 1e-9 * (most(drive) + abs(torque))
     if rate > 0.0:
         assert torque > forwards - slack
     elif rate < 0.0:
@@ -65,18 +77,16 @@ def test_at_rest_the_drive_starts_only_with_more_than_what_holds_it(drive, torqu
         assert backwards - slack <= torque <= forwards + slack
 
 
-@given(drive=RIGID, velocity=SPEEDS, torque=TORQUES, time=TIMES)
+@given(drive=RIGID | PULLED, velocity=SPEEDS, torque=TORQUES, time=TIMES)
 def test_work_goes_into_motion_and_losses(drive, velocity, torque, time):
     move = drive.move(0.0, velocity, torque, time)
     work = torque * (move.before + move.after)
     inertia = drive.motor_inertia + drive.load_inertia
     stored = 0.5 * inertia * (move.velocity ** 2 - velocity ** 2)
-    if drive.always_resists:
-        taken = drive.resistance * (move.before + move.after)
-    else:
-        taken = drive.resistance * (abs(move.before) + abs(move.after))
+    taken = (drive.pull * (move.before + move.after)
+             + drive.friction * (abs(move.before) + abs(move.after)))
     size = (inertia * (velocity ** 2 + move.velocity ** 2)
-            + (abs(torque) + drive.resistance) * (abs(move.before) + abs(move.after)))
+            + (abs(torque) + most(drive)) * (abs(move.before) + abs(move.after)))
     gear = work - stored - taken
     if drive.efficiency == 1.0:
         assert abs(gear) <= ROUNDING * size
@@ -84,26 +94,33 @@ def test_work_goes_into_motion_and_losses(drive, velocity, torque, time):
         assert gear >= -ROUNDING * size  # a gearbox gives no power
 
 
-@given(drive=RIGID, velocity=SPEEDS, torque=TORQUES, time=TIMES, cut=st.floats(0.0, 1.0))
+@given(drive=RIGID | PULLED, velocity=SPEEDS, torque=TORQUES, time=TIMES, cut=st.floats(0.0, 1.0))
 def test_a_move_may_be_cut_anywhere(drive, velocity, torque, time, cut):
     whole = drive.move(1.0, velocity, torque, time)
     first = drive.move(1.0, velocity, torque, cut * time)
     second = drive.move(first.position, first.velocity, torque, time - cut * time)
     inertia = drive.motor_inertia + drive.load_inertia
-    quick = abs(velocity) + time * (abs(torque) + drive.resistance) / (
+    quick = abs(velocity) + time * (abs(torque) + most(drive)) / (
         inertia * drive.efficiency)
     assert second.velocity == pytest.approx(whole.velocity, abs=ROUNDING * quick)
     assert second.position == pytest.approx(whole.position, abs=ROUNDING * (1.0 + quick))
 
 
 def test_a_brake_brings_the_drive_to_rest_and_friction_keeps_it_there():
-    drive = RigidDrive(1.0, 0.0, resistance=2.0)
+    drive = RigidDrive(1.0, 0.0, friction=2.0)
     move = drive.move(0.0, 1.0, -1.0, 5.0)
     assert move == pytest.approx((1.0 / 6.0, 0.0, 1.0 / 6.0, 0.0))
 
 
+@given(drive=PULLED, torque=TORQUES)
+def test_what_the_gearbox_holds_at_rest_lies_between_what_friction_allows(drive, torque):
+    assume(drive.acceleration(torque, 0.0) == 0.0)
+    held = drive.load_torque(torque, 0.0)
+    assert drive.pull - drive.friction <= held <= drive.pull + drive.friction
+
+
 def test_a_torque_beyond_friction_turns_the_drive_back():
-    drive = RigidDrive(1.0, 0.0, resistance=2.0)
+    drive = RigidDrive(1.0, 0.0, friction=2.0)
     move = drive.move(0.0, 5.0, -3.0, 3.0)  # at rest after 1 s, then -1 rad/s² for 2 s
     assert move == pytest.approx((0.5, -2.0, 2.5, -2.0))
 
@@ -146,5 +163,5 @@ def test_setpoints_must_follow_one_another():
 
 
 def test_the_smallest_speed_there_is_goes_on():
-    move = RigidDrive(1.0, 0.0, 0.0, 1.0, False).move(0.0, 5e-324, 0.0, 0.0625)
+    move = RigidDrive(1.0, 0.0).move(0.0, 5e-324, 0.0, 0.0625)
     assert move.velocity == 5e-324

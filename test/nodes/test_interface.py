@@ -21,12 +21,14 @@ pytestmark = [pytest.mark.timeout(120), pytest.mark.ros]
 
 TRACK = {'tracks': ['track'], 'track.on_deg': [10.0], 'track.off_deg': [20.0]}
 AXIS = {'segments': ['rest'], 'rest.end_deg': 360.0, 'trajectory.rate_hz': 50.0, **TRACK}
+CUT = {'load': ['cut'], 'cut.type': 'process', 'cut.force': 5.0, 'cut.window_deg': [10.0, 20.0]}
 CONFIGS = Path(__file__).resolve().parents[2] / 'config'
 PRESS = read_sections(CONFIGS / 'cam_press_drive.yaml')
 FOUR_BAR = {**read_sections(CONFIGS / 'four_bar.yaml')['four_bar'], 'theta2.axis': 'cam_axis'}
 NODES = {
     'master_shaft': (MasterShaft, {'obey': ['cam_axis'], **TRACK}), 'cam_axis': (CamAxis, AXIS),
-    'drive_sim': (DriveSim, {'axis': 'cam_axis'}), 'linkage_state': (LinkageState, FOUR_BAR),
+    'drive_sim': (DriveSim, {'axis': 'cam_axis', **CUT}),
+    'linkage_state': (LinkageState, FOUR_BAR),
 }
 # What ROS gives to every lifecycle node
 _OF_ROS = ('parameter', 'transition', 'get_state', 'change_state', 'get_available', 'rosout',

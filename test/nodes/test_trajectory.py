@@ -103,10 +103,10 @@ def test_messages_come_at_their_rate_with_exact_points(world, feeder):
             if point.time > 4 * STEP:
                 break
             phi = SPEED * (STEP * number + point.time)
-            assert point[1:] == pytest.approx(
+            assert point[1:4] == pytest.approx(
                 exact.at_speed(phi, SPEED, 0.0), rel=1e-4, abs=1e-4)
         # behind them the axis stops, in case no message follows
-        assert times[-1] > 4 * STEP and points[-1][2:] == (0.0, 0.0)
+        assert times[-1] > 4 * STEP and points[-1][2:4] == (0.0, 0.0)
         assert not any(len(p.effort) for p in message.points)
     assert node.health()[1]['trajectories'] == 21
 
@@ -117,7 +117,7 @@ def test_a_dead_time_shifts_the_points(world, feeder):
     assert world.spin_until(lambda: messages)
     exact = build_axis('axis', FEEDER).profile
     phi = SPEED * (7 * PERIOD_NS * 1e-9 + 0.01)
-    assert rows(messages[0])[0][1:] == pytest.approx(exact.at_speed(phi, SPEED, 0.0))
+    assert rows(messages[0])[0][1:4] == pytest.approx(exact.at_speed(phi, SPEED, 0.0))
 
 
 def test_when_the_shaft_comes_to_rest_and_when_the_node_ceases_it_says_so(world, feeder):
@@ -130,11 +130,11 @@ def test_when_the_shaft_comes_to_rest_and_when_the_node_ceases_it_says_so(world,
     assert ticks % 10 > 1
     assert world.spin_until(lambda: len(messages) == 2 + (ticks - 1) // 10)
     stands = node._last.position
-    assert {point[1:] for point in rows(messages[-1])} == {(stands, 0.0, 0.0)}
+    assert {point[1:4] for point in rows(messages[-1])} == {(stands, 0.0, 0.0)}
     count = len(messages)
     node.trigger_deactivate()
     assert world.spin_until(lambda: len(messages) > count)
-    assert {point[1:] for point in rows(messages[-1])} == {(stands, 0.0, 0.0)}
+    assert {point[1:4] for point in rows(messages[-1])} == {(stands, 0.0, 0.0)}
     assert len(messages[-1].points) == 5
 
 

@@ -39,6 +39,7 @@ _DPI = 160
 _POINTS = 240  # per segment: smooth at print resolution
 _MOST_POINTS = 12000  # of one curve, however many pieces a table makes of it
 _FEWEST_POINTS = 6
+_BESIDE = 1e-9  # how far beside an edge its two sides are looked at (relative)
 # Two angle labels closer than this would touch at the width above [deg].
 _CLOSE_DEG = 14.0
 _STYLE: dict[Any, Any] = {
@@ -139,7 +140,8 @@ def save(figure: Figure, path: Path) -> Path:
     return path
 
 
-def exact_curve(profile: CamProfile, order: int) -> tuple[Array, Array]:
+def exact_curve(profile: CamProfile, order: int, edges: Sequence[float] = (),
+                ) -> tuple[Array, Array]:
     """
     Give one cycle of a cam as points to be joined by lines.
 
@@ -149,19 +151,24 @@ def exact_curve(profile: CamProfile, order: int) -> tuple[Array, Array]:
         The cam.
     order : int
         Order of the derivative.
+    edges : Sequence[float]
+        Further shaft angles at which something steps, within one turn [rad].
 
     Returns
     -------
     tuple[ndarray, ndarray], shape (n,) each
         Shaft angles [deg] and values [unit/rad^order]. Every joint is there twice, with its value
-        from the left and from the right, so that a step is drawn as one.
+        from the left and from the right, so that a step is drawn as one; and so is every edge,
+        by angles just before and just behind it.
 
     """
     curve = profile.curve.differentiated(order)
     angles, values = [], []
     count = max(_FEWEST_POINTS, min(_POINTS, _MOST_POINTS // len(curve.pieces)))
     for begin, piece in zip(curve.breaks, curve.pieces):
-        local = np.linspace(0.0, piece.length, count)
+        beside = np.outer(edges, (1.0 - _BESIDE, 1.0 + _BESIDE)).ravel() - begin
+        beside = beside[(beside > 0.0) & (beside < piece.length)]
+        local = np.sort(np.concatenate([np.linspace(0.0, piece.length, count), beside]))
         angles.append((begin + local) / DEGREE)
         values.append(piece(local))
     return np.concatenate(angles), np.concatenate(values)

@@ -80,10 +80,12 @@ def torque_curve(settings: DriveSettings, axis: Axis, omega: float) -> TorqueCur
         Motor speed and torque over one turn of the shaft.
 
     """
-    angles, position = exact_curve(axis.profile, 0)
-    slope, bend = (exact_curve(axis.profile, order)[1] for order in (1, 2))
-    state: DriveState = settings.drive.follow_all(position, slope * omega, bend * omega * omega)
-    return TorqueCurve(omega / RPM, angles * DEGREE, np.asarray(state.motor_velocity),
+    drive = settings.drive
+    angles, position = exact_curve(axis.profile, 0, drive.edges)
+    slope, bend = (exact_curve(axis.profile, order, drive.edges)[1] for order in (1, 2))
+    phi = angles * DEGREE
+    state: DriveState = drive.follow_all(position, slope * omega, bend * omega * omega, phi)
+    return TorqueCurve(omega / RPM, phi, np.asarray(state.motor_velocity),
                        np.asarray(state.motor_torque))
 
 
