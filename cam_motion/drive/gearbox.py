@@ -46,6 +46,10 @@ class Gearbox:
     Document 004 multiplies by the efficiency always; when the load drives the motor that would
     let the losses push. Here they divide then.
 
+    `gain` is for a torque of the motor that reaches the gearbox whole, all inertia being taken
+    together at the load shaft, as document 004 does; `motor_torque` for what passes the teeth,
+    without what the inertia on the motor shaft takes.
+
     """
 
     ratio: float = 1.0
