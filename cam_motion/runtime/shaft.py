@@ -162,6 +162,9 @@ class Shaft:
         """
         Obey another highest speed; a running shaft ramps as far as it may.
 
+        A shaft that is to stop at the end of a cycle slows down too, and stops at the first end
+        at which it then can; a higher speed does not hurry it.
+
         Parameters
         ----------
         t : float
@@ -173,8 +176,14 @@ class Shaft:
         if speed == self.allowed:
             return
         self.allowed = speed
-        if self.mode(t) is ShaftMode.RUNNING:
+        mode = self.mode(t)
+        if mode is ShaftMode.RUNNING:
             self._motion = self._ramp(t, self.target)
+        elif mode is ShaftMode.STOPPING_AT_CYCLE_END and self._motion.fastest(t) > speed:
+            if self.target:
+                self._plan_stop_at_cycle_end(t)
+            else:
+                self.stop(t)
 
     def make_room(self, t: float, room: RampRoom | None) -> None:
         """
@@ -249,6 +258,10 @@ class Shaft:
         if mode is not ShaftMode.RUNNING or self.target == 0.0:
             raise ShaftError(f'the shaft is not running ({mode.value}): it cannot stop at the '
                              'end of a cycle')
+        self._plan_stop_at_cycle_end(t)
+        self._mode = ShaftMode.STOPPING_AT_CYCLE_END
+
+    def _plan_stop_at_cycle_end(self, t: float) -> None:
         speed = self.target
         cruise = self._ramp(t, speed)
         start, cruising = cruise.settled_at, cruise.final
@@ -259,7 +272,6 @@ class Shaft:
         end = sense * math.ceil(turns - _AT_CYCLE_END) * TURN
         wait = max(0.0, (end - cruising.phi - distance) / speed)
         self._motion = cruise.continued([RampStep(wait, 0.0), *brake], ShaftState(end, 0.0, 0.0))
-        self._mode = ShaftMode.STOPPING_AT_CYCLE_END
 
     def reset(self, t: float) -> None:
         """

@@ -105,6 +105,24 @@ class ShaftMotion:
         """
         return self._phases[max(0, bisect_right(self._starts, t) - 1)].at(t)
 
+    def fastest(self, t: float) -> float:
+        """
+        Find the highest speed at an instant and at the beginnings of the steps behind it.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        Returns
+        -------
+        float
+            A magnitude [rad/s]; that of the whole rest of a motion whose ramps do not turn back.
+
+        """
+        return max(abs(self.state(t).omega), *(
+            abs(phase.state.omega) for phase in self._phases if phase.start >= t), 0.0)
+
     def ramped(self, t: float, target: float, limits: RampLimits) -> ShaftMotion:
         """
         Plan the fastest ramp to another speed, from this motion's state at an instant.

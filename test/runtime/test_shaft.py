@@ -239,3 +239,32 @@ def test_a_motion_continues_behind_its_last_step_and_leaves_the_first_one_as_it_
     assert longer.state(ended + 0.25) == motion.state(ended + 0.25)
     assert longer.state(ended + 9.0) == longer.final == (50.0, 0.0, 0.0)
     assert motion.final == before and motion.settled_at == ended
+
+
+@pytest.mark.parametrize('wait', [0.1, 0.3, 0.5, 0.62, 0.7])
+def test_a_stop_at_cycle_end_obeys_a_lower_speed(wait):
+    """Whenever the axes allow less, the shaft slows down, and stops at an end all the same."""
+    shaft = make()
+    shaft.run(0.0)
+    begin = shaft.settled_at
+    shaft.stop_at_cycle_end(begin)
+    t = begin + wait * (shaft.settled_at - begin)
+    before = shaft.state(t).omega
+    shaft.allow(t, 8.0)
+    assert shaft.mode(t) is ShaftMode.STOPPING_AT_CYCLE_END
+    check_motion(shaft, t, shaft.settled_at)
+    slowed = max(0.0, before - 8.0) / LIMITS.acceleration + LIMITS.acceleration / LIMITS.jerk + 0.2
+    assert all(shaft.state(u).omega <= 8.0 for u in instants(t + slowed, shaft.settled_at))
+    end = shaft.state(shaft.settled_at)
+    assert end.omega == 0.0 and abs(math.remainder(end.phi, TURN)) < AT_CYCLE_END
+    shaft.allow(t, 100.0)
+    assert shaft.settled_at - t < 60.0
+
+
+def test_a_stop_at_cycle_end_stops_at_once_where_no_speed_is_allowed():
+    shaft = make()
+    shaft.run(0.0)
+    t = shaft.settled_at
+    shaft.stop_at_cycle_end(t)
+    shaft.allow(t, 0.0)
+    assert shaft.mode(t) is ShaftMode.STOPPING
