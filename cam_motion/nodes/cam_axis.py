@@ -104,6 +104,7 @@ class CamAxis(ManagedNode):
             self._follow, self._on_shaft_lost)
         self._last: Point | None = None  # the last setpoint
         self._told: FollowerState | None = None  # the state that has been published
+        self._told_revision = 0  # and what else of the follower has been told with it
         self._bound = math.nan  # highest speed of the shaft as published [rad/s]
         self._setpoints = self.make_publisher(JointTrajectoryPoint, '~/setpoint', SETPOINTS)
         self._max_speed = self.make_publisher(Float64, '~/max_speed_cpm', LATCHED)
@@ -138,6 +139,9 @@ class CamAxis(ManagedNode):
         self._shaft.stop()
         if self._last is not None:
             self._emit(self._last._replace(velocity=0.0, acceleration=0.0))
+            # activated again it is to stand there, not to be where the shaft has got to meanwhile
+            self._follower.hold(
+                FollowerState.HELD, 'it was deactivated: reset it', in_place=True)
         self.outputs.hold(self._last)
         self._told = None
 
@@ -168,8 +172,10 @@ class CamAxis(ManagedNode):
         self._emit(setpoint)
         if self.outputs.wanted:
             self.outputs.answer(point, setpoint)
-        if follower.state is not self._told:
+        if follower.state is not self._told or follower.revision != self._told_revision:
             self._tell()
+            if text := follower.reason or follower.waits_for:
+                self.get_logger().warning(f'{self.get_name()} is {follower.state.value}: {text}')
 
     def _emit(self, setpoint: Point) -> None:
         self._last = setpoint
@@ -179,7 +185,7 @@ class CamAxis(ManagedNode):
 
     def _tell(self) -> None:
         """Publish the state, and the highest speed of the shaft if it has changed."""
-        self._told = self._follower.state
+        self._told, self._told_revision = self._follower.state, self._follower.revision
         self.set_state(self._told.value)
         bound = self._speed_bound
         omega = math.inf if bound is None else bound.omega
@@ -249,7 +255,8 @@ class CamAxis(ManagedNode):
             return response
         response.success = True
         response.message = f'{self.get_name()} ' + (
-            done if plan is None else f'{planned} {plan.text(self.axis.unit)}')
+            self._follower.waits_for or done if plan is None
+            else f'{planned} {plan.text(self.axis.unit)}')
         self.get_logger().info(response.message)
         self._tell()
         return response
@@ -338,11 +345,13 @@ class CamAxis(ManagedNode):
         if bound is not None:
             values |= {'max_speed_cpm': bound.omega / RPM,
                        'held_back_by': f'{bound.segment}: {bound.quantity}'}
-        if follower.reason:
-            values['reason'] = follower.reason
-        if follower.state in (FollowerState.HELD, FollowerState.FAULT) or watch.reason:
+        excess = follower.excess if bound is not None else ''
+        reason = follower.reason or excess or follower.waits_for
+        if reason:
+            values['reason'] = reason
+        if follower.state in (FollowerState.HELD, FollowerState.FAULT) or watch.reason or excess:
             return diagnostics.ERROR, values
-        bad = shaft.refused or self.outputs.misses
+        bad = shaft.refused or self.outputs.misses or reason
         return diagnostics.WARN if bad else diagnostics.OK, values
 
 

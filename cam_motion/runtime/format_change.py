@@ -27,6 +27,7 @@ from cam_motion.runtime.planning import (
     Timing,
     TransitionError,
 )
+from cam_motion.runtime.recipe import Leaving, Recipe
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.runtime.transition import Blend
 from cam_motion.units import DEGREE, RPM
@@ -178,10 +179,10 @@ class FormatFollower(Follower):
         if sense * (shaft.phi - start) > _LATE:
             start = shaft.phi
         plan = self._planned(new, start, sense)
-        self.scheduled, self._watch = Scheduled(new, start, sense, plan), True
-        self.plan = plan
-        self._set_motion(plan.blend)
-        self._begun, self._through = FollowerState.CHANGING, FollowerState.IN_SYNC
+        self.scheduled = Scheduled(new, start, sense, plan)
+        # all axes have agreed upon the angle: until then nothing is planned anew
+        self._lay(plan, None, Leaving(self.layout))
+        self._planned_at = start
         return plan
 
     def revoke(self) -> bool:
@@ -195,7 +196,7 @@ class FormatFollower(Follower):
 
         """
         scheduled, self.scheduled = self.scheduled, None
-        if scheduled is not None and self.plan is scheduled.plan:
+        if scheduled is not None and scheduled.plan is not None and self.plan is scheduled.plan:
             self._cancel()
         return scheduled is not None
 
@@ -225,10 +226,13 @@ class FormatFollower(Follower):
         self._watch = self.plan is not None or self.scheduled is not None
 
     def _take_over(self, waiting: Scheduled) -> None:
-        plan, new = waiting.plan, waiting.new
-        self.layout = new.layout.anchored_as(self.layout)
+        plan, new, old = waiting.plan, waiting.new, self.layout
+        self.layout = new.layout.anchored_as(old)
         if plan is not None and isinstance(plan.goal, Layout):
             self.layout = plan.goal
+            timing = Timing(span=new.span, longest=new.settings.change.longest)
+            self._recipe = Recipe(
+                lambda start, _: new.layout.continuing(old, start, self._sense), timing)
         self.settings = new.settings
         self.scheduled = None
         self.on_taken()
@@ -252,7 +256,7 @@ class FormatFollower(Follower):
             self._take_over(self.scheduled)
         return super().reset()
 
-    def hold(self, state: FollowerState, reason: str) -> None:
+    def hold(self, state: FollowerState, reason: str, in_place: bool = False) -> None:
         """
         Stand where the axis is until it is reset; a format goes on waiting.
 
@@ -262,9 +266,11 @@ class FormatFollower(Follower):
             HELD or FAULT.
         reason : str
             Why.
+        in_place : bool
+            See `Follower.hold`.
 
         """
-        super().hold(state, reason)
+        super().hold(state, reason, in_place)
         if self.scheduled is not None:
             self.scheduled, self._watch = self.scheduled._replace(plan=None), True
 

@@ -52,7 +52,22 @@ class At(Enum):
 
 
 class TransitionError(CamMotionError):
-    """A transition that cannot be made within the limits, or not now."""
+    """
+    A transition that cannot be made within the limits, or not now.
+
+    Parameters
+    ----------
+    text : str
+        Why.
+    fits_up_to : float
+        Speed of the shaft up to which it could be made [rad/s]; 0 where that would not help.
+
+    """
+
+    def __init__(self, text: str, fits_up_to: float = 0.0) -> None:
+        """Say why."""
+        super().__init__(text)
+        self.fits_up_to = fits_up_to
 
 
 @dataclass(frozen=True)
@@ -163,11 +178,32 @@ def pace_of(state: ShaftState, bound: SpeedBound | None, ramp: RampLimits,
     fastest = speed if bound is None else max(speed, bound.omega)
     if not obeyed:
         return Pace(fastest, fastest, ramp, sense)
-    rise = sense * state.alpha
-    if rise > 0.0:
-        ahead = speed + rise * (_OBEYS_WITHIN + 0.5 * rise / ramp.jerk)
-        return Pace(min(ahead, fastest), fastest, ramp, sense)
+    if sense * state.alpha > 0.0:
+        return Pace(min(speed_ahead(state, ramp), fastest), fastest, ramp, sense)
     return Pace(speed, speed or fastest, ramp, sense)
+
+
+def speed_ahead(state: ShaftState, ramp: RampLimits) -> float:
+    """
+    Tell which speed the shaft cannot but come to before it obeys.
+
+    Parameters
+    ----------
+    state : ShaftState
+        The shaft now.
+    ramp : RampLimits
+        The jerk by which it takes its acceleration back.
+
+    Returns
+    -------
+    float
+        A magnitude [rad/s]: what it has or, while it accelerates, somewhat more.
+
+    """
+    speed, rise = abs(state.omega), math.copysign(1.0, state.omega) * state.alpha
+    if rise <= 0.0:
+        return speed
+    return speed + rise * (_OBEYS_WITHIN + 0.5 * rise / ramp.jerk)
 
 
 def check_speed(bound: SpeedBound | None, speed: float) -> None:
@@ -271,7 +307,8 @@ def plan_transition(old: Motion, target: Target, state: ShaftState, timing: Timi
             best = last
     if best is not None and best.highest_speed >= pace.needed:
         return best
-    raise TransitionError(_why(best or last, kept or best is not None, pace, limits))
+    raise TransitionError(_why(best or last, kept or best is not None, pace, limits),
+                          0.0 if best is None else best.highest_speed)
 
 
 def _windows(phi: float, timing: Timing, sense: float, ends_at: bool,

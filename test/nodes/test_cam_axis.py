@@ -17,6 +17,7 @@ from cam_motion.nodes.wire import pack_point
 from cam_motion.runtime.point import Point
 import pytest
 from rclpy.qos import QoSProfile
+from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(90)]
@@ -142,7 +143,32 @@ def test_a_hold_setpoint_is_left_behind_and_nothing_while_inactive(world):
     assert len(setpoints) == 11
     node.trigger_activate()
     send(world, publisher, [message_of(points[0])], setpoints)
-    assert setpoints[-1] == setpoints[0]
+    # it stands where it is: the shaft has moved on meanwhile
+    assert setpoints[-1] == setpoints[-2]._replace(sec=points[0].sec, nanosec=points[0].nanosec)
+    assert node.state_text == 'held'
+    still = points[-1]._replace(velocity=0.0, acceleration=0.0)
+    node.trigger_deactivate()
+    assert world.spin_until(lambda: len(setpoints) == 13)
+    node.trigger_activate()
+    send(world, publisher, [message_of(still)], setpoints)
+    assert setpoints[-1].position == last.position
+    assert node.state_text == 'held'
+    assert world.call(Trigger, 'cam_axis/reset').success
+    assert node.state_text == 'in_sync'
+
+
+def test_activated_again_where_it_stands_on_its_curve_an_axis_goes_on(world):
+    node = active_axis(world, KNIFE)
+    setpoints = world.points('cam_axis/setpoint')
+    publisher = world.speaker(JointTrajectoryPoint, 'shaft')
+    still = Point(3.0, 0.0, 0.0, 1, 0)
+    send(world, publisher, [message_of(still)], setpoints)
+    node.trigger_deactivate()
+    assert world.spin_until(lambda: len(setpoints) == 2)
+    node.trigger_activate()
+    assert node.state_text == 'held'
+    send(world, publisher, [message_of(still)], setpoints)
+    assert node.state_text == 'in_sync'
 
 
 def test_an_axis_that_has_heard_no_shaft_leaves_no_setpoint_behind(world):

@@ -503,3 +503,177 @@ def test_a_change_that_waits_outlives_a_stop_that_is_called_off():
     turn(follower, 5.0, 1.0, 3.0 * TURN)
     assert follower.state is FollowerState.IN_SYNC
     assert follower.answer(20.0, 5.0, 0.0)[0] == SMALL.sample(20.0)[0]
+
+
+def run_shaft(follower, shaft, seconds, asked, limits=None, until=lambda: False):
+    """Turn a shaft that obeys, from where it is, looking at every tick; give the setpoints."""
+    t, points = shaft.now, []
+    for _ in range(round(seconds / TICK)):
+        t += TICK
+        points.append(follower.answer(*shaft.state(t)))
+        if limits is not None and len(points) > 1:
+            check_step(points[-2], points[-1], limits)
+        obey(shaft, t, asked, follower)
+        if until():
+            break
+    shaft.now = t
+    return points
+
+
+def running_shaft(speed, phi=0.0, sense=1.0):
+    """Make a shaft that runs at a steady speed."""
+    shaft = Shaft(sense * speed, RAMP, RAMP, phi=phi)
+    shaft.run(0.0)
+    shaft.now = shaft.settled_at
+    return shaft
+
+
+TIGHT = Limits(velocity=5.0, acceleration=20.0)
+
+
+@pytest.mark.parametrize('how', ['at the start', 'engage', 'reset'])
+def test_an_axis_waits_for_a_shaft_that_is_too_fast_for_it(how):
+    """It tells its bound, stands until the shaft has slowed down, and joins by a transition."""
+    follower = make(limits=TIGHT, engaged=how != 'engage')
+    free = follower.layout.speed_bound(TIGHT).omega
+    if how == 'reset':
+        turn(follower, 3.0, 0.0, 2.0)
+        follower.coast()
+        follower.answer(2.0, 0.0, 0.0)
+        follower.hold(FollowerState.HELD, 'silence')
+    shaft = running_shaft(2.0 * free)
+    first = follower.answer(*shaft.state(shaft.now))
+    if how != 'at the start':
+        assert getattr(follower, how)() is None
+    assert first[1:] == (0.0, 0.0)
+    assert follower.state is FollowerState.WAITING
+    assert follower.speed_bound.omega == free
+    assert 'slowed down' in follower.waits_for
+    points = run_shaft(follower, shaft, 8.0, 2.0 * free, TIGHT,
+                       lambda: follower.state is FollowerState.IN_SYNC)
+    assert follower.state is FollowerState.IN_SYNC
+    assert points[0][0] == first[0]
+    assert not follower.waits_for
+
+
+def test_it_waits_for_as_slow_a_shaft_as_its_way_onto_the_curve_needs():
+    short = Timing(span=20.0 * DEGREE, longest=20.0 * DEGREE)
+    follower = make(limits=TIGHT, engage=short)
+    free = follower.layout.speed_bound(TIGHT).omega
+    shaft = running_shaft(1.5 * free, phi=-100.0)
+    run_shaft(follower, shaft, 20.0, 1.5 * free, TIGHT,
+              lambda: follower.state is FollowerState.IN_SYNC)
+    assert follower.state is FollowerState.IN_SYNC
+
+
+def test_an_axis_that_waits_can_be_told_to_stand_or_given_another_cam():
+    follower = make(layout_of(PRESS, SMALL), limits=TIGHT)
+    follower.answer(1.0, 100.0, 0.0)
+    assert follower.waits_for
+    assert follower.change(layout_of(PRESS, scale=0.001)) is None
+    follower.answer(1.1, 100.0, 0.0)
+    assert not follower.waits_for
+    assert follower.plan is not None
+    follower = make(limits=TIGHT)
+    follower.answer(1.0, 100.0, 0.0)
+    assert follower.disengage() is None
+    assert follower.state is FollowerState.DISENGAGED
+    assert follower.speed_bound is None
+    follower.answer(1.1, 1.0, 0.0)
+    assert follower.state is FollowerState.DISENGAGED
+
+
+def test_a_shaft_that_cannot_be_slowed_down_is_no_place_to_join():
+    follower = make(limits=TIGHT, engaged=False, obeyed=False)
+    follower.answer(1.0, 100.0, 0.0)
+    with pytest.raises(TransitionError, match='slow down first'):
+        follower.engage()
+    assert follower.state is FollowerState.DISENGAGED
+
+
+def test_an_axis_says_by_how_much_the_shaft_exceeds_its_limits():
+    follower = make(limits=TIGHT)
+    follower.answer(1.0, 5.0, 0.0)
+    assert follower.excess == ''
+    follower.answer(1.1, 60.0, 0.0)
+    assert '573 cycles/min' in follower.excess
+
+
+def test_what_a_change_leads_away_from_bounds_the_shaft_until_it_begins():
+    """With a smaller cam to come, the shaft does not run faster than the old one bears."""
+    later = Timing(At.ANGLE, span=80.0 * DEGREE)
+    follower = make(limits=TIGHT, change=later)
+    free = follower.layout.speed_bound(TIGHT).omega
+    shaft = running_shaft(free)
+    run_shaft(follower, shaft, 0.1, 1e3)
+    plan = follower.change(layout_of(PRESS, scale=0.2))
+    assert plan.highest_speed > 1.2 * free
+    assert follower.speed_bound.omega == free
+    run_shaft(follower, shaft, 3.0, 1e3, TIGHT)
+    assert follower.state is FollowerState.IN_SYNC
+    assert follower.speed_bound.omega > 1.2 * free
+
+
+def test_a_transition_on_top_of_another_obeys_that_until_it_begins():
+    later = Timing(At.ANGLE, span=1.0, angle=6.0)
+    follower = make(layout_of(PRESS, SMALL), limits=TIGHT)
+    free = follower.layout.speed_bound(TIGHT).omega
+    turn(follower, 0.3 * free, 0.0, 1.0)
+    plan = follower.change(replace(follower.layout, active=('two',)))
+    turn(follower, 0.3 * free, 1.0, 1.2)
+    follower.settings = replace(follower.settings, change=later)
+    follower.change(layout_of(PRESS, scale=0.01))
+    assert follower.speed_bound.omega <= plan.highest_speed
+
+
+@pytest.mark.parametrize('name', ['engage', 'disengage', 'change'])
+def test_a_transition_planned_for_the_other_sense_is_planned_anew(name):
+    """Commanded while the shaft stands or turns back, it is made whichever way that turns."""
+    soon = Timing(At.ANGLE, span=1.0, angle=3.0)
+    follower = make(engaged=name != 'engage', engage=soon, disengage=soon, change=soon)
+    follower.answer(2.0, 1e-3, 0.0)
+    if name == 'change':
+        follower.change(layout_of(PRESS, scale=0.5))
+    else:
+        getattr(follower, name)()
+    assert follower.plan.blend.span > 0.0
+    turn(follower, -6.0, 2.0, -12.0)
+    assert follower.plan is None
+    through = FollowerState.DISENGAGED if name == 'disengage' else FollowerState.IN_SYNC
+    assert follower.state is through
+
+
+def test_a_transition_passed_back_over_its_start_is_planned_anew():
+    follower = make()
+    turn(follower, 6.0, 0.0, 2.0)
+    follower.change(layout_of(PRESS, scale=0.5))
+    turn(follower, 6.0, 2.0, 2.5)
+    assert follower.state is FollowerState.CHANGING
+    turn(follower, -6.0, 2.5, -12.0)
+    assert follower.state is FollowerState.IN_SYNC
+    assert follower.answer(-13.0, -6.0, 0.0)[0] == 0.5 * PRESS.sample(-13.0)[0]
+
+
+def test_a_fault_is_not_covered_up_by_a_silence():
+    follower = make()
+    turn(follower, 6.0, 0.0, 2.0)
+    follower.coast()
+    follower.hold(FollowerState.FAULT, 'another shaft')
+    follower.answer(2.0, 6.0, 0.0)
+    follower.coast()
+    follower.hold(FollowerState.HELD, 'silence')
+    assert (follower.state, follower.reason) == (FollowerState.FAULT, 'another shaft')
+
+
+@pytest.mark.parametrize('phi, omega, state', [
+    (2.0, 0.0, FollowerState.IN_SYNC), (2.0 + TURN, 0.0, FollowerState.IN_SYNC),
+    (2.3, 0.0, FollowerState.HELD), (2.0, 6.0, FollowerState.HELD)])
+def test_held_in_place_it_goes_on_only_where_it_stands_on_its_curve(phi, omega, state):
+    follower = make()
+    turn(follower, 6.0, 0.0, 2.0)
+    y = follower.answer(2.0, 0.0, 0.0)[0]
+    follower.hold(FollowerState.HELD, 'deactivated', in_place=True)
+    assert follower.answer(phi, omega, 0.0) == (y, 0.0, 0.0)
+    assert follower.state is state
+    follower.answer(2.0, 0.0, 0.0)
+    assert follower.state is state  # only the first point counts
