@@ -18,7 +18,10 @@ from cam_motion.nodes.qos import LATCHED
 from cam_motion.runtime.cam_switch import CamSwitch
 from cam_motion.runtime.point import Point
 from rclpy.publisher import Publisher
+from rclpy.timer import Timer
 from std_msgs.msg import Bool
+
+_LOOKS_EVERY = 0.01  # while a duration goes on: for its end, should no tick come [s]
 
 
 class _Output:
@@ -48,6 +51,9 @@ class TrackOutput:
     """
     Publishes each track of a node whenever it is switched, latched.
 
+    Ticks switch. A duration ends on time all the same when no more of them come, because the
+    shaft is lost or stands silent: what it opened must not stay open.
+
     Parameters
     ----------
     node : ManagedNode
@@ -62,7 +68,11 @@ class TrackOutput:
         self._outputs = {
             name: _Output(settings, node.make_publisher(Bool, f'~/{name}', LATCHED))
             for name, settings in tracks.items()}
+        self._node = node
         self._last_time = 0.0
+        self._heard = 0  # when the last tick came, by the clock of the timer [ns]
+        self._timer: Timer | None = None  # from the first duration on
+        self._looking = False
 
     def answer(self, shaft: Point, setpoint: Point | None = None) -> None:
         """
@@ -83,6 +93,8 @@ class TrackOutput:
         if time < self._last_time:
             self._forget()  # the time base has begun anew
         self._last_time = time
+        if self._looking:
+            self._heard = self._node.tick_clock.now().nanoseconds
         for output in self._outputs.values():
             if output.over_position and setpoint is not None:
                 on = output.answer(time, *setpoint[:3])
@@ -90,6 +102,28 @@ class TrackOutput:
                 on = output.answer(time, phi, omega, alpha)
             if on is not output.told:
                 output.tell(on)
+                if output.switch.is_timed and not self._looking:
+                    self._look()
+
+    def _look(self) -> None:
+        """Begin to look for the end of a duration."""
+        self._looking, self._heard = True, self._node.tick_clock.now().nanoseconds
+        if self._timer is None:
+            self._timer = self._node.create_timer(
+                _LOOKS_EVERY, self._expire, clock=self._node.tick_clock)
+        else:
+            self._timer.reset()
+
+    def _expire(self) -> None:
+        silent = 1e-9 * (self._node.tick_clock.now().nanoseconds - self._heard)
+        timed = [output for output in self._outputs.values() if output.switch.is_timed]
+        if silent > _LOOKS_EVERY:  # else ticks see to it
+            for output in timed:
+                if not output.switch.expire(self._last_time + silent):
+                    output.tell(False)
+        if not timed and self._timer is not None:
+            self._timer.cancel()
+            self._looking = False
 
     def _forget(self) -> None:
         for output in self._outputs.values():
@@ -113,6 +147,9 @@ class TrackOutput:
     def release(self) -> None:
         """Switch everything off: the node ceases to work."""
         self._forget()
+        timer, self._timer, self._looking = self._timer, None, False
+        if timer is not None:
+            self._node.destroy_timer(timer)
         for output in self._outputs.values():
             if output.told:
                 output.tell(False)

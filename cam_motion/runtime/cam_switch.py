@@ -271,6 +271,30 @@ class CamSwitch:
         self._last_time = time
         return self.on
 
+    @property
+    def is_timed(self) -> bool:
+        """Whether it is on for a duration, which ends whether or not anything moves."""
+        return self.on and self._until < math.inf
+
+    def expire(self, time: float) -> bool:
+        """
+        Switch off if a duration is over, without a tick.
+
+        Parameters
+        ----------
+        time : float
+            Time on the base of the ticks [s].
+
+        Returns
+        -------
+        bool
+            Whether the output is on at that time.
+
+        """
+        if time >= self._until:
+            self.on, self._until = False, math.inf
+        return self.on
+
     def _pass(self, time: float, x: float, speed: float, acceleration: float, turned: bool,
               ) -> None:
         """Find out which edges have been passed."""

@@ -97,6 +97,22 @@ def test_tracks_of_an_axis_over_the_shaft_and_over_its_position(world):
         'half.on': False, 'half.count': 2, 'half.unseen': 0})
 
 
+def test_a_duration_ends_on_time_when_the_shaft_is_lost(world):
+    """No tick comes any more, but what the track has opened is shut."""
+    node = up(world, CamAxis, {**FEEDER, 'cut.duration': 1.0})
+    cut = world.listen(Bool, 'cam_axis/cut')
+    setpoints, shaft = world.points('cam_axis/setpoint'), world.speaker(
+        JointTrajectoryPoint, 'shaft')
+    assert world.spin_until(lambda: node._setpoints.get_subscription_count() == 1)
+    for _ in range(2):  # the second time the shaft comes back at another time and angle
+        turn(world, shaft, setpoints, 280)  # to 201.6 degrees
+        assert world.spin_until(lambda: cut and told(cut)[-1])
+        assert world.spin_until(lambda: node.state_text == 'held')
+        assert world.spin_until(lambda: not told(cut)[-1])
+        assert not diagnosed(node)[1]['cut.on']
+    assert told(cut) == [False, True, False, True, False]
+
+
 def test_who_comes_late_is_told_the_state(world):
     node = up(world, CamAxis, FEEDER)
     setpoints, shaft = world.points('cam_axis/setpoint'), world.speaker(
