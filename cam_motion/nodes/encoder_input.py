@@ -15,7 +15,7 @@ from typing import Any
 
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.shaft_ticker import ShaftTicker
-from cam_motion.runtime.encoder import SmoothShaft, TrackingFilter, Unwrapping
+from cam_motion.runtime.encoder import JumpGate, SmoothShaft, TrackingFilter, Unwrapping
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 from cam_motion.units import DEGREE, TURN
@@ -23,6 +23,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 
 _SAMPLES = 10  # after which the filter is trusted
+_ASTRAY = 5  # measurements in a row that cannot be: the encoder has lost its angle
 
 
 class EncoderInput:
@@ -41,7 +42,9 @@ class EncoderInput:
     Attributes
     ----------
     text : str
-        What it does: ``waiting``, ``following``, ``stopping`` or ``stopped``.
+        What it does: ``waiting``, ``following``, ``stopping`` or ``stopped``. It stops when the
+        encoder falls silent, or has jumped: the machine has not, so that neither the old angle
+        nor the new one is to be trusted until it is reset.
     reason : str
         Why it has stopped.
     samples, refused : int
@@ -61,6 +64,7 @@ class EncoderInput:
         self._timeout = values['encoder.timeout']
         self._limits = RampLimits(values['quick_stop_acceleration'], values['quick_stop_jerk'])
         self.samples = self.refused = 0
+        self._gate = JumpGate()
         self.reset()
         node.make_subscription(JointState, values['encoder.topic'], self._on_sample,
                                qos_profile_sensor_data)
@@ -68,6 +72,8 @@ class EncoderInput:
     def reset(self) -> None:
         """Wait for the encoder anew."""
         self._filter = TrackingFilter(self._bandwidth)
+        jumps, self._gate = self._gate.refused, JumpGate()
+        self._gate.refused = jumps
         self._smooth: SmoothShaft | None = None
         self._ramp: ShaftMotion | None = None
         self._heard = 0
@@ -114,6 +120,11 @@ class EncoderInput:
             return self.state
         if self._heard < _SAMPLES:
             return None
+        if self._gate.astray >= _ASTRAY:
+            text = f'the encoder has jumped by {self._gate.jump / DEGREE:.4g} deg'
+            self._node.get_logger().error(f'{text}: stopping')
+            self.release(self._last, text)
+            return self.tick(t)
         if t - self._filter.time > self._timeout:
             self._node.get_logger().error(
                 f'the encoder has been silent for {t - self._filter.time:.3g} s: stopping')
@@ -138,6 +149,11 @@ class EncoderInput:
             return self._smooth is None
         return self.text == 'stopped'
 
+    @property
+    def jumps(self) -> int:
+        """Count the measurements that were left out because no shaft can have come there."""
+        return self._gate.refused
+
     def health(self) -> dict[str, Any]:
         """
         Give the figures of the diagnostics.
@@ -148,7 +164,8 @@ class EncoderInput:
             Figures by name.
 
         """
-        values: dict[str, Any] = {'encoder_samples': self.samples, 'encoder_refused': self.refused}
+        values: dict[str, Any] = {'encoder_samples': self.samples, 'encoder_refused': self.refused,
+                                  'encoder_jumps': self.jumps}
         return values | ({'reason': self.reason} if self.reason else {})
 
     def _on_sample(self, message: JointState) -> None:
@@ -163,6 +180,13 @@ class EncoderInput:
         stamp = message.header.stamp
         stamp_ns = stamp.sec * 10**9 + stamp.nanosec or self._node.get_clock().now().nanoseconds
         t = (stamp_ns - self._ticker.stamp(0)) * 1e-9
-        self._filter.update(t, self._unwrap(message.position[index]))
+        phi, state = self._unwrap(message.position[index]), self._filter.state
+        trusted = self._heard >= _SAMPLES and state is not None
+        if not self._gate.admits(t, phi, state.omega if trusted else None):
+            self._node.get_logger().error(
+                f'the encoder jumps by {self._gate.jump / DEGREE:.4g} deg: left out',
+                throttle_duration_sec=1.0)
+            return
+        self._filter.update(t, phi)
         self.samples += 1
         self._heard += 1

@@ -34,6 +34,7 @@ from cam_motion.units import RPM
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
+_SLACK = 1.001  # of the speed allowed: a measured one fluctuates
 _STOP_WITHIN = 3.0  # an ordinary stop that takes longer gives way to the quick stop [s]
 
 
@@ -150,10 +151,18 @@ class MasterShaft(ManagedNode):
         self._allowed[axis] = omega
         was = self._shaft.target
         self._shaft.allow(self._now, min(self._allowed.values()))
-        if abs(self._shaft.speed) > self._shaft.allowed and self._shaft.target != was:
+        if self._encoder is None and abs(self._shaft.speed) > self._shaft.allowed and (
+                self._shaft.target != was):
             self.get_logger().warning(
                 f'{self._slowest} holds the shaft back to {self._shaft.allowed / RPM:.5g} '
                 f'cycles/min; it is set to {self._shaft.speed / RPM:.5g}')
+
+    def _excess(self, omega: float) -> str:
+        """Say by how much a shaft that cannot be slowed down is too fast; empty if it is not."""
+        if abs(omega) <= self._shaft.allowed * _SLACK:
+            return ''
+        return (f'the encoder turns the shaft at {abs(omega) / RPM:.4g} cycles/min, {self._slowest} '
+                f'keeps its limits up to {self._shaft.allowed / RPM:.4g}')
 
     @property
     def _slowest(self) -> str:
@@ -225,7 +234,11 @@ class MasterShaft(ManagedNode):
         phi, omega, _ = self._shaft_now
         if self._encoder is not None:
             values = self._ticker.health(phi, omega) | self._encoder.health()
-            return diagnostics.ERROR if self._encoder.reason else diagnostics.OK, values
+            if excess := self._excess(omega):
+                values.setdefault('reason', excess)
+            bad = self._encoder.jumps or self._ticker.tracks.misses
+            return (diagnostics.ERROR if 'reason' in values else
+                    diagnostics.WARN if bad else diagnostics.OK), values
         values = self._ticker.health(phi, omega) | {'set_speed_cpm': self._shaft.speed / RPM}
         if math.isfinite(self._shaft.allowed):
             values |= {'allowed_speed_cpm': self._shaft.allowed / RPM}
@@ -264,6 +277,8 @@ class MasterShaft(ManagedNode):
             state = self._encoder.tick(t)
             if state is not None:
                 self._ticker.publish(time_ns, *state)
+                if excess := self._excess(state.omega):
+                    self.get_logger().error(excess, throttle_duration_sec=5.0)
             self.set_state(self._encoder.text)
             return
         if self._run_at is not None and t >= self._run_at:

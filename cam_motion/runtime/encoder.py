@@ -21,6 +21,67 @@ import math
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.units import TURN
 
+_JUMP = 0.1  # by which a measured angle may miss where it is expected, for noise [rad]
+_STEEPEST = 500.0  # acceleration that no shaft of a machine has [rad/s²]
+_UNSETTLED = 0.5  # share by which the estimate of the speed may be wrong
+
+
+class JumpGate:
+    """
+    Tells angles that a shaft can have come to from those that it cannot.
+
+    A measurement is expected where the last good one and the estimated speed lead to. What lies
+    farther from there than noise and any acceleration of a machine could bring it, is a fault of
+    the encoder: to follow it would make every axis jump.
+
+    Attributes
+    ----------
+    refused, astray : int
+        Measurements refused, ever and since the last good one.
+    jump : float
+        By how much the last of them missed where it was expected [rad].
+
+    """
+
+    def __init__(self) -> None:
+        """Know no angle yet."""
+        self.refused = self.astray = 0
+        self.jump = 0.0
+        self._last: tuple[float, float] | None = None
+
+    def admits(self, t: float, phi: float, omega: float | None) -> bool:
+        """
+        Look at a measurement.
+
+        Parameters
+        ----------
+        t : float
+            When it was measured [s].
+        phi : float
+            Measured angle, unwrapped [rad].
+        omega : float | None
+            Estimate of the speed [rad/s]; None while there is none to be trusted.
+
+        Returns
+        -------
+        bool
+            Whether the shaft can be there.
+
+        """
+        if self._last is not None and omega is not None:
+            step = t - self._last[0]
+            if step <= 0.0:
+                return True  # too late to matter
+            miss = phi - self._last[1] - omega * step
+            room = _JUMP + step * (_UNSETTLED * abs(omega) + 0.5 * _STEEPEST * step)
+            if abs(miss) > room:
+                self.refused += 1
+                self.astray += 1
+                self.jump = miss
+                return False
+        self._last, self.astray = (t, phi), 0
+        return True
+
 
 class TrackingFilter:
     """

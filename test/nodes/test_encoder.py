@@ -96,3 +96,47 @@ def test_nothing_is_published_before_the_encoder_is_heard(world, encoder):
     assert world.spin_until(lambda: node.health()[1]['encoder_refused'] > 5)
     assert shaft == []
     assert node.stopped
+
+
+def state_of(angle, world):
+    """Write a measurement of now."""
+    now = world.probe.get_clock().now().nanoseconds
+    return JointState(header=Header(stamp=Time(sec=now // 10**9, nanosec=now % 10**9)),
+                      name=['line'], position=[angle])
+
+
+def test_an_encoder_that_jumps_is_not_followed(world):
+    """One measurement that cannot be is left out; some in a row bring the shaft to rest."""
+    node = make(world)
+    jump, zero = [0.0], world.probe.get_clock().now().nanoseconds
+    publisher = world.probe.create_publisher(JointState, 'encoder', qos_profile_sensor_data)
+
+    def measure():
+        now = world.probe.get_clock().now().nanoseconds
+        publisher.publish(state_of((OMEGA * (now - zero) * 1e-9 + jump[0]) % TURN, world))
+    world.probe.create_timer(0.005, measure)
+    shaft = world.points('shaft')
+    assert world.spin_until(lambda: len(shaft) > 100)
+    publisher.publish(state_of((OMEGA * 1e-9 * (
+        world.probe.get_clock().now().nanoseconds - zero) + 1.0) % TURN, world))
+    assert world.spin_until(lambda: node.health()[1]['encoder_jumps'] > 0)
+    assert world.spin_until(lambda: len(shaft) > 150)
+    assert max(point.velocity for point in shaft) < 1.2 * OMEGA
+    assert node.state_text == 'following'
+    jump[0] = 1.0
+    assert world.spin_until(lambda: node.state_text == 'stopped')
+    assert max(point.velocity for point in shaft) < 1.2 * OMEGA
+    level, values = node.health()
+    assert level == b'\2' and 'jumped' in values['reason']
+    assert world.call(Trigger, 'master_shaft/reset').success
+    assert world.spin_until(lambda: node.state_text == 'following')
+
+
+def test_a_master_says_that_its_encoder_turns_faster_than_an_axis_allows(world, encoder):
+    encoder()
+    node = make(world)
+    node.obey('press', 0.5 * OMEGA)
+    assert world.spin_until(lambda: 'press keeps its limits' in node.health()[1].get('reason', ''))
+    assert node.health()[0] == b'\2'
+    node.obey('press', 2.0 * OMEGA)
+    assert node.health()[0] == b'\0'

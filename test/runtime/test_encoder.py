@@ -9,7 +9,7 @@
 
 import math
 
-from cam_motion.runtime.encoder import SmoothShaft, TrackingFilter, Unwrapping
+from cam_motion.runtime.encoder import JumpGate, SmoothShaft, TrackingFilter, Unwrapping
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.runtime.shaft_motion import ShaftState
@@ -99,3 +99,32 @@ def test_unwrapping(steps, ratio):
     for step in steps:
         angle += step
         assert unwrap(angle % TURN) == pytest.approx(ratio * angle + 0.25, abs=1e-9)
+
+
+@pytest.mark.parametrize('step', [0.001, 0.004, 0.02])
+@pytest.mark.parametrize('acceleration, jerk', [(30.0, 300.0), (150.0, 3000.0)])
+def test_no_ramp_of_a_real_shaft_is_taken_for_a_jump(step, acceleration, jerk):
+    rng = np.random.default_rng(3)
+    limits = RampLimits(acceleration, jerk)
+    shaft = Shaft(30.0, limits, limits)
+    shaft.run(0.5)
+    found, gate = TrackingFilter(60.0), JumpGate()
+    for k in range(round(3.0 / step)):
+        if k * step > 2.0:
+            shaft.stop(2.0)
+        phi = shaft.state(k * step).phi + 3e-3 * rng.standard_normal()
+        assert gate.admits(k * step, phi, found.state.omega if k > 10 else None)
+        found.update(k * step, phi)
+
+
+@pytest.mark.parametrize('omega', [-30.0, 0.0, 6.0])
+def test_a_jump_is_refused_as_long_as_it_lasts(omega):
+    gate = JumpGate()
+    assert gate.admits(0.0, 1.0, None)
+    for k in range(1, 6):
+        t = 0.004 * k
+        assert not gate.admits(t, 2.0 + omega * t, omega)
+        assert gate.astray == k
+        assert gate.jump == pytest.approx(1.0)
+    assert gate.admits(0.024, 1.0 + 0.024 * omega, omega)
+    assert (gate.astray, gate.refused) == (0, 5)
