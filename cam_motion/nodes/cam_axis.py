@@ -28,6 +28,7 @@ from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.shaft_input import ShaftInput
 from cam_motion.nodes.staging import is_staged, own_values, Staging
+from cam_motion.nodes.warm_up import warm_up_planning
 from cam_motion.nodes.wire import pack_point
 from cam_motion.runtime.follower_settings import FollowerState
 from cam_motion.runtime.format_change import FormatFollower
@@ -97,6 +98,7 @@ class CamAxis(ManagedNode):
         settings = self.axis.values
         self._follower = FormatFollower(
             self.axis.layout, self.axis.settings, settings['engage_at_start'])
+        warm_up_planning(self.axis.layout)
         self._dead_time = settings['dead_time']
         self._shaft = ShaftInput(
             self, self.followed, settings['master_timeout'],

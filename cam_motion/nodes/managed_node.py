@@ -19,6 +19,7 @@ from cam_motion.io.parameters import is_of_every_node, ParameterSpec
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.parameters import declare, declare_given, take_from_any_namespace, values_of
 from cam_motion.nodes.qos import LATCHED, overridable
+from cam_motion.nodes.warm_up import warm_up_logging
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
@@ -231,6 +232,7 @@ class ManagedNode(LifecycleNode):
         """Configure; see `configure`."""
         def work() -> None:
             self.problems = ()
+            warm_up_logging()
             self.configure(values_of(self))
             self._configured = True
             self.set_state('inactive')

@@ -161,8 +161,8 @@ class MasterShaft(ManagedNode):
         """Say by how much a shaft that cannot be slowed down is too fast; empty if it is not."""
         if abs(omega) <= self._shaft.allowed * _SLACK:
             return ''
-        return (f'the encoder turns the shaft at {abs(omega) / RPM:.4g} cycles/min, {self._slowest} '
-                f'keeps its limits up to {self._shaft.allowed / RPM:.4g}')
+        return (f'the encoder turns the shaft at {abs(omega) / RPM:.4g} cycles/min, '
+                f'{self._slowest} keeps its limits up to {self._shaft.allowed / RPM:.4g}')
 
     @property
     def _slowest(self) -> str:

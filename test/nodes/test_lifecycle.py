@@ -7,6 +7,10 @@
 # language governing permissions and limitations under the License.
 """The life of a node through its lifecycle services: it says what fails, and outlives mistakes."""
 
+import os
+import subprocess
+import sys
+
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.drive_sim import DriveSim
 from cam_motion.nodes.line import make_line
@@ -186,3 +190,26 @@ def test_a_line_without_autostart_waits_for_each_of_its_nodes(world, machine_fil
         assert world.change(node.get_name(), 'activate')
     ticks = world.points('shaft')
     assert world.spin_until(lambda: len(ticks) > 10)
+
+
+def test_nothing_is_imported_or_looked_for_by_the_first_command(domain):
+    """What a first command, and its line in the log, would import is there before the shaft."""
+    code = (
+        'import inspect, sys; sys.argv[1:] = []\n'
+        'import rclpy; from rclpy.parameter import Parameter\n'
+        'from cam_motion.nodes.cam_axis import CamAxis\n'
+        'rclpy.init()\n'
+        f'given = {FEEDER!r}\n'
+        'node = CamAxis(parameter_overrides=[Parameter(n, value=v) for n, v in given.items()])\n'
+        'node.trigger_configure(); node.trigger_activate()\n'
+        'node._follower.answer(1.0, 5.0, 0.0)\n'
+        'modules = set(sys.modules); known = len(inspect.modulesbyfile)\n'
+        'node._follower.disengage(); node.get_logger().info("told")\n'
+        'more = set(sys.modules) - modules\n'
+        'assert not more, more\n'
+        'assert 100 < known <= len(inspect.modulesbyfile) < known + 50\n'
+        'node.destroy_node(); rclpy.shutdown()\n')
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60, check=False,
+        env={**os.environ, 'ROS_DOMAIN_ID': str(domain)})
+    assert done.returncode == 0, done.stderr
