@@ -19,9 +19,11 @@ from cam_motion.io.machine import build_drive
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.track_output import TrackOutput
 from cam_motion.nodes.trajectory_output import Effort, TrajectoryOutput
+from cam_motion.runtime.dead_time import ahead
 from cam_motion.runtime.motion_over_angle import Cascade, Motion
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
+from cam_motion.runtime.shaft_motion import ShaftState
 
 Course = tuple[tuple[float, float, float], Motion]
 """Angle, speed and acceleration of the shaft, and what an axis does over its angle."""
@@ -83,10 +85,8 @@ class AxisOutputs:
         followed, motion = self._now()
         if self._source is None:
             return followed, motion
-        (phi, omega, alpha), inner = self._source().course
-        lead = self._dead_time
-        return ((phi + lead * (omega + 0.5 * lead * alpha), omega + lead * alpha, alpha),
-                Cascade(motion, inner))
+        shaft, inner = self._source().course
+        return ahead(ShaftState(*shaft), self._dead_time), Cascade(motion, inner)
 
     def answer(self, point: Point, setpoint: Point) -> None:
         """

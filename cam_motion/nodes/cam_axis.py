@@ -30,11 +30,13 @@ from cam_motion.nodes.shaft_input import ShaftInput
 from cam_motion.nodes.staging import is_staged, own_values, Staging
 from cam_motion.nodes.warm_up import warm_up_planning
 from cam_motion.nodes.wire import pack_point
+from cam_motion.runtime.dead_time import DeadTime
 from cam_motion.runtime.follower_settings import FollowerState
 from cam_motion.runtime.format_change import FormatFollower
 from cam_motion.runtime.planning import Plan, TransitionError
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
+from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.units import RPM
 from rclpy.publisher import Publisher
 import scipy.interpolate  # noqa: F401 (for laws of later formats: not in the middle of a tick)
@@ -99,7 +101,8 @@ class CamAxis(ManagedNode):
         self._follower = FormatFollower(
             self.axis.layout, self.axis.settings, settings['engage_at_start'])
         warm_up_planning(self.axis.layout)
-        self._dead_time = settings['dead_time']
+        lead = settings['dead_time']
+        self._dead_time = DeadTime(lead) if lead else None
         self._shaft = ShaftInput(
             self, self.followed, settings['master_timeout'],
             RampLimits(settings['stop_acceleration'], settings['stop_jerk']),
@@ -164,10 +167,9 @@ class CamAxis(ManagedNode):
 
     def _follow(self, point: Point) -> None:
         phi, omega, alpha, sec, nanosec = point
-        lead = self._dead_time
-        if lead:
-            phi += lead * (omega + 0.5 * lead * alpha)
-            omega += lead * alpha
+        if self._dead_time is not None:
+            phi, omega, alpha = self._dead_time.ahead(
+                sec + 1e-9 * nanosec, ShaftState(phi, omega, alpha))
         follower = self._follower
         position, velocity, acceleration = follower.answer(phi, omega, alpha)
         setpoint = Point(position, velocity, acceleration, sec, nanosec)
