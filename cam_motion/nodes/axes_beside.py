@@ -16,15 +16,18 @@ from typing import Any, NamedTuple
 
 from cam_motion.io.axis_limits import axes_of, CascadedAxis, ramp_room
 from cam_motion.io.parameters import is_of_every_node
+from cam_motion.motion.limits import SpeedBound
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.staging import in_background, own_values
 from cam_motion.runtime.ramp_room import RampRoom
+from cam_motion.units import DEGREE
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import qos_profile_parameter_events
 import scipy.interpolate  # noqa: F401 (for laws of changed axes: not beside a running tick)
 
 _LIMITS = 'limits.'
+_SAME = 1e-6  # a speed this near, as a share, has been reckoned from the same cam
 _QUIET = 0.05  # changes that follow each other more closely are reckoned with together [s]
 
 
@@ -34,12 +37,37 @@ class Reckoning(NamedTuple):
 
     The ``room`` for its ramps, and the highest speed by axis in cascade [rad/s]: such an axis
     knows what it follows only. These are ``final`` unless some axis is still on its way to
-    another coupling.
+    another coupling. The ``bounds`` by axis say what holds the shaft back, and where.
     """
 
     room: RampRoom
     cascaded: dict[str, float]
     final: bool = True
+    bounds: Mapping[str, SpeedBound | None] = {}
+
+    def culprit(self, axis: str, omega: float) -> str:
+        """
+        Say what of an axis holds the shaft back.
+
+        Parameters
+        ----------
+        axis : str
+            Its name.
+        omega : float
+            The highest speed that it allows [rad/s].
+
+        Returns
+        -------
+        str
+            Its name, with segment, quantity and angle of the cam where they are known; a speed
+            that is not that of its cams is that of a transition, or of an axis not known here.
+
+        """
+        bound = self.bounds.get(axis)
+        if bound is None or not math.isclose(bound.omega, omega, rel_tol=_SAME):
+            return axis
+        where = '' if math.isnan(bound.at) else f' at {bound.at / DEGREE:.4g} deg'
+        return f'{axis} ({bound.segment}{where}: {bound.quantity})'
 
 
 def reckon(sections: Mapping[str, Mapping[str, Any]], names: Iterable[str]) -> Reckoning:
@@ -61,10 +89,10 @@ def reckon(sections: Mapping[str, Mapping[str, Any]], names: Iterable[str]) -> R
     """
     known = axes_of(sections)
     axes = {name: known[name] for name in names if name in known}
-    bounds = {name: axis.speed_bound for name, axis in axes.items()
-              if isinstance(axis, CascadedAxis)}
+    bounds = {name: axis.speed_bound for name, axis in axes.items()}
     return Reckoning(ramp_room(axes.values()), {
-        name: math.inf if bound is None else bound.omega for name, bound in bounds.items()})
+        name: math.inf if (bound := bounds[name]) is None else bound.omega
+        for name, axis in axes.items() if isinstance(axis, CascadedAxis)}, bounds=bounds)
 
 
 class AxesBeside:

@@ -340,6 +340,7 @@ class CamAxis(ManagedNode):
         values: dict[str, Any] = {
             'setpoints': shaft.answered, 'refused_points': shaft.refused,
             'points_of_another_shaft': watch.refused, 'missed_ticks': watch.missed,
+            'worst_answer_us': 1e6 * shaft.worst,
             **self.outputs.health()}
         if last is not None:
             values |= {'position': last.position, 'velocity': last.velocity,

@@ -31,6 +31,7 @@ from cam_motion.nodes.shaft_ticker import Listener, ShaftTicker
 from cam_motion.runtime.shaft import Shaft, ShaftError, ShaftMode
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.units import RPM
+from rclpy.parameter import Parameter
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
@@ -110,7 +111,7 @@ class MasterShaft(ManagedNode):
         self._encoder = EncoderInput(self, checked, self._ticker) if (
             checked['encoder.topic']) else None
         self.make_subscription(
-            Float64, '~/speed_cpm', lambda message: self._set_speed(message.data), SETPOINTS)
+            Float64, '~/speed_cpm', self._on_speed, SETPOINTS)
         sections = self.sections()
         wanted = checked['obey'] or list(sections)
         reckoning = reckon(sections, wanted)
@@ -128,6 +129,7 @@ class MasterShaft(ManagedNode):
 
     def _on_reckoned(self, reckoning: Reckoning) -> None:
         """Reckon with axes as they are now."""
+        self._reckoning = reckoning
         self._shaft.make_room(self._now, reckoning.room)
         for name, omega in reckoning.cascaded.items():
             # the way to another coupling is planned for the speed allowed before it, at most
@@ -166,7 +168,9 @@ class MasterShaft(ManagedNode):
 
     @property
     def _slowest(self) -> str:
-        return min(self._allowed, key=lambda axis: self._allowed[axis])
+        """Name the axis that holds the shaft back, and what of it."""
+        axis = min(self._allowed, key=lambda axis: self._allowed[axis])
+        return self._reckoning.culprit(axis, self._allowed[axis])
 
     def cleanup(self) -> None:
         """Drop topics, services and the timer."""
@@ -288,11 +292,22 @@ class MasterShaft(ManagedNode):
         self._ticker.publish(time_ns, *self._shaft.state(t))
         self.set_state(self._shaft.mode(t).value)
 
-    def _set_speed(self, speed_cpm: float) -> None:
+    def _set_speed(self, speed_cpm: float) -> bool:
         try:
             self._shaft.set_speed(self._now, speed_cpm * RPM)
         except ShaftError as error:
             self.get_logger().error(f'speed_cpm: {error}')
+            return False
+        return True
+
+    def _on_speed(self, message: Float64) -> None:
+        """Take over a set speed, and let the parameter say so."""
+        if self._set_speed(message.data) and self.get_parameter('speed_cpm').value != message.data:
+            self.own_change = True
+            try:
+                self.set_parameters([Parameter('speed_cpm', value=message.data)])
+            finally:
+                self.own_change = False
 
     def _on_run(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data:

@@ -50,6 +50,8 @@ class ShaftInput:
         What is known of the shaft.
     answered, refused : int
         Points of the shaft that were handed on, and messages that were none.
+    worst : float
+        Longest time that handing one on has taken [s].
 
     """
 
@@ -64,6 +66,7 @@ class ShaftInput:
         self._change = change
         self.watch = ShaftWatch(timeout)
         self.answered = self.refused = 0
+        self.worst = 0.0
         self._coasting: Coasting | None = None
         self._suspect: Point | None = None  # the last point of a shaft that seems to be silent
         self._timers: list[Timer] = []
@@ -107,7 +110,11 @@ class ShaftInput:
             self._node.get_logger().error(
                 f'{self._name}: {self.watch.reason}: left out', throttle_duration_sec=1.0)
             return
+        begun = monotonic()
         self._follow(point)
+        took = monotonic() - begun
+        if took > self.worst:
+            self.worst = took
         self.answered += 1
 
     def take_bytes(self, data: bytes) -> None:

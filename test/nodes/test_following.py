@@ -9,6 +9,7 @@
 
 from itertools import pairwise
 import math
+import re
 import signal
 
 from cam_motion.io.axis import build_axis
@@ -322,7 +323,9 @@ def test_the_master_obeys_what_the_axes_allow(world):
     assert world.spin_until(lambda: shaft[-1].acceleration == 0.0 and (
         shaft[-1].velocity == pytest.approx(bound * (1.0 - 5e-4), rel=1e-9)))
     values = master.health()[1]
-    assert values['held_back_by'] == 'cam_axis'
+    assert re.fullmatch(
+        r'cam_axis \(\w+ at [\d.]+ deg: acceleration\)', values['held_back_by'])
+    assert master.get_parameter('speed_cpm').value == 300.0
     assert values['allowed_speed_cpm'] == pytest.approx(bound / RPM)
     assert max(abs(point.acceleration) for point in setpoints) <= 5.0
 
@@ -350,7 +353,7 @@ def test_the_master_keeps_the_limits_of_an_axis_that_follows_another(world):
     world.spin_for(1.0)
     assert max(abs(point.acceleration) for point in setpoints) <= 5.0
     assert heard[-1].data == math.inf
-    assert master.health()[1]['held_back_by'] == 'cam_axis'
+    assert master.health()[1]['held_back_by'] == 'cam_axis (behind leader: velocity)'
     # its own coupling and limits change while it runs; the way to another coupling is planned
     # for the speed allowed before, which only other limits raise
     for values, omega in (({'scale': 0.5}, alone / 3.0),
