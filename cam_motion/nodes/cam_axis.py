@@ -257,6 +257,7 @@ class CamAxis(ManagedNode):
         except TransitionError as error:
             response.message = str(error)
             return response
+        self._staging.drop('the axis has been given a command')
         response.success = True
         response.message = f'{self.get_name()} ' + (
             self._follower.waits_for or done if plan is None
@@ -320,6 +321,7 @@ class CamAxis(ManagedNode):
         except TransitionError as error:
             follower.settings = before
             return str(error)
+        self._staging.drop('other parameters of the axis have been set')
         self._adopt(axis)
         return ''
 

@@ -42,6 +42,7 @@ _Result = TypeVar('_Result')
 BUSY = 'the format is being looked at: set it again in a moment'
 """Reason for which a format is not staged yet while the shaft turns."""
 
+_LAPSES_AFTER = 30.0  # whoever staged a format and has not been heard since is gone [s]
 _GIVE_WAY = 0.0005  # how long the thread that answers the shaft may wait for another one [s]
 _NOTHING = {spec.name: spec.default for spec in STAGED}
 
@@ -118,6 +119,7 @@ class Staging:
         self._staged: tuple[CoupledAxis, Mapping[str, Any], Format] | None = None
         self._promised = math.nan  # shaft angle for which the axis waits to be told once more
         self._timer: Timer | None = None
+        self._lapse: Timer | None = None  # until what is staged is dropped
         self._asked: tuple[Any, ...] = ()  # what is being looked at in the background
         self._answer: Future[tuple[CoupledAxis, dict[str, Any]]] | None = None
         follower.on_taken = self._on_taken
@@ -138,8 +140,9 @@ class Staging:
         if self._follower.scheduled is not None:
             return (f'a change of format is scheduled: send NaN on {TAKE_OVER} to revoke it on '
                     'all axes')
-        if self._staged is not None:
-            return "a format is staged: set the parameter staged to '' to drop it"
+        if math.isfinite(self._promised):
+            return ('a change of format is about to be ordered: ask again when it is over, or '
+                    f'send NaN on {TAKE_OVER} to call it off')
         return ''
 
     @property
@@ -169,13 +172,13 @@ class Staging:
             return self.refusal
         values = {**values_of(self._node), **changes}
         if not values['staged']:
-            self._staged = None
-            self._withdraw()
+            self._forget()
             return ''
         if not self._node.active:
             return 'the node is not active'
         if self._staged is not None:
-            return f'another format is staged already; {self.refusal}'
+            return ("another format is staged already: set the parameter staged to '' to drop it; "
+                    f'unless it is ordered it lapses {_LAPSES_AFTER:g} s after it was staged')
         asked = tuple(values[name] for name in _NOTHING)
         if self._answer is None or self._asked != asked:
             self._asked, self._answer = asked, in_background(
@@ -189,7 +192,48 @@ class Staging:
             return '; '.join(map(str, error.problems))
         except TransitionError as error:
             return str(error)
+        self._keep()
         return ''
+
+    def drop(self, why: str) -> None:
+        """
+        Forget a format that is staged and that nobody has asked for.
+
+        The axis has been told something else since, so that what was found out about the way
+        there no longer holds. Whoever staged it gets no answer when asking for it, and then no
+        axis changes.
+
+        Parameters
+        ----------
+        why : str
+            For the log.
+
+        """
+        if self._staged is None or self.waits or self._timer is not None:
+            return
+        self._node.get_logger().warning(f'the staged format is dropped: {why}')
+        self._forget()
+        # not now: parameters may just be being set
+        self._timer = self._node.create_timer(
+            0.0, self._on_settled, clock=self._node.steady_clock)
+
+    def _forget(self) -> None:
+        self._staged = None
+        self._keep()
+        self._withdraw()
+
+    def _keep(self) -> None:
+        """Keep what is staged, but not for ever."""
+        if self._lapse is not None:
+            self._node.destroy_timer(self._lapse)
+        self._lapse = None if self._staged is None else self._node.create_timer(
+            _LAPSES_AFTER, self._on_lapse, clock=self._node.steady_clock)
+
+    def _on_lapse(self) -> None:
+        if self._lapse is not None:
+            self._node.destroy_timer(self._lapse)
+            self._lapse = None
+        self.drop(f'nobody has ordered it within {_LAPSES_AFTER:g} s')
 
     def _checked(self, axis: CoupledAxis, given: dict[str, Any], values: Mapping[str, Any],
                  ) -> tuple[CoupledAxis, Mapping[str, Any], Format]:
@@ -211,14 +255,14 @@ class Staging:
                 self.tell()
                 self._adopt(None)
             if self._staged is not None and self._timer is None:
-                self._staged = None
-                self._withdraw()
+                self._forget()
                 self._write(own_values(values_of(self._node)))
             return
         if self._staged is None or self._follower.scheduled is not None:
             return
         if self._promised != start:
             self._promised = start
+            self._keep()
             self.tell()
             return
         self._promised = math.nan
@@ -250,7 +294,10 @@ class Staging:
         if timer is not None:
             self._node.destroy_timer(timer)
         staged, self._staged = self._staged, None
-        if staged is not None:
+        self._keep()
+        if staged is None:
+            self._write(own_values(values_of(self._node)))
+        else:
             self._write(staged[1])
             if self._node.active:
                 self.tell()

@@ -16,6 +16,7 @@ from cam_motion.io.axis import build_axis
 from cam_motion.io.config import read_sections
 from cam_motion.io.format_change import FormatError, plan_format
 from cam_motion.io.machine import build_machine
+from cam_motion.nodes import staging
 from cam_motion.nodes.cam_axis import CamAxis
 from cam_motion.nodes.format_client import FormatClient
 from cam_motion.nodes.parameters import values_of
@@ -205,14 +206,46 @@ def test_what_an_axis_refuses_it_says_and_nothing_changes(machine, formats):
     machine.check_smooth()
 
 
-def test_while_a_format_is_staged_nothing_else_can_make_the_axis_another_one(machine, formats):
+@pytest.mark.parametrize('how', ['engage', 'scale'])
+def test_a_format_that_is_only_staged_gives_way_to_what_the_axis_is_told(machine, formats, how):
+    """Whoever staged it may be dead; alive, they get no answer, and no axis changes."""
     machine.turn(100)
     assert machine.stage('press', formats[1]['press']).successful
-    assert 'staged' in machine.put('press', scale=0.5).reason
-    answer = machine.world.call(SetBool, 'press/engage', data=False)
-    assert not answer.success and 'staged' in answer.message
     assert 'another format is staged' in machine.stage('press', formats[0]['press']).reason
-    assert machine.put('press', staged='').successful
+    if how == 'scale':
+        assert machine.put('press', scale=0.5).successful
+    else:
+        assert machine.world.call(SetBool, 'press/engage', data=False).success
+    node = machine.nodes['press']
+    assert machine.world.spin_until(lambda: node.get_parameter('staged').value == '')
+    assert node.get_parameter('scale').value == (0.5 if how == 'scale' else 1.0)
+    told = machine.world.listen(Float64, 'press/format_change')
+    machine.order(machine.angles[-1] + 20.0)
+    machine.turn(50)
+    assert not any(math.isfinite(each.data) for each in told)
+
+
+def test_a_format_that_is_never_ordered_lapses(machine, formats, monkeypatch):
+    monkeypatch.setattr(staging, '_LAPSES_AFTER', 0.05)
+    machine.turn(100)
+    assert machine.stage('press', formats[1]['press']).successful
+    node = machine.nodes['press']
+    assert machine.world.spin_until(lambda: node.get_parameter('staged').value == '')
+    assert machine.stage('press', formats[1]['press']).successful
+
+
+def test_an_axis_that_has_said_it_is_ready_does_nothing_else(machine, formats):
+    machine.turn(100)
+    assert machine.stage('press', formats[1]['press']).successful
+    start = machine.angles[-1] + 20.0
+    told = machine.world.listen(Float64, 'press/format_change')
+    machine.orders.publish(Float64(data=start))
+    assert machine.world.spin_until(lambda: told and told[-1].data == start)
+    answer = machine.world.call(SetBool, 'press/engage', data=False)
+    assert not answer.success and 'NaN' in answer.message
+    assert 'NaN' in machine.put('press', scale=0.5).reason
+    machine.orders.publish(Float64(data=math.nan))
+    assert machine.world.spin_until(lambda: math.isnan(told[-1].data))
     assert machine.put('press', scale=0.5).successful
 
 
