@@ -104,7 +104,9 @@ CAM_AXIS = (
     ParameterSpec('stop_acceleration', 'double', 150.0,
                   'Deceleration of the shaft by which the axis stops on its own curve when it '
                   'must stop while the shaft goes on, or the shaft has fallen silent; the same '
-                  'for all axes that are to stop together.', 'rad/s²', above=0.0),
+                  'for all axes that are to stop together. An axis that follows another one '
+                  'stops within 2 stop_acceleration / stop_jerk, whatever the unit of that one.',
+                  'rad/s²', above=0.0),
     ParameterSpec('stop_jerk', 'double', 3000.0, 'Jerk of that stop.', 'rad/s³', above=0.0),
     *SHAPING,
     TRACKS,

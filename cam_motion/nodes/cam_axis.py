@@ -106,7 +106,7 @@ class CamAxis(ManagedNode):
         self._shaft = ShaftInput(
             self, self.followed, settings['master_timeout'],
             RampLimits(settings['stop_acceleration'], settings['stop_jerk']),
-            self._follow, self._on_shaft_lost)
+            self._follow, self._on_shaft_lost, of_axis=settings['follows'] != SHAFT)
         self._last: Point | None = None  # the last setpoint
         self._told: FollowerState | None = None  # the state that has been published
         self._told_revision = 0  # and what else of the follower has been told with it

@@ -14,8 +14,9 @@ from time import monotonic
 
 from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.wire import unpack_point
-from cam_motion.runtime.coasting import Coasting
+from cam_motion.runtime.coasting import Coasting, stop_of_axis
 from cam_motion.runtime.follower_settings import FollowerState
+from cam_motion.runtime.plausibility import AxisPlausibility
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.watchdog import ShaftWatch
@@ -43,6 +44,8 @@ class ShaftInput:
     change : Callable[[FollowerState, str], None]
         Told STOPPING_ON_CURVE when the points to come are its own, and HELD or FAULT, with the
         reason, when they have come to rest.
+    of_axis : bool
+        Whether what it follows is another axis, with a unit of its own.
 
     Attributes
     ----------
@@ -57,14 +60,15 @@ class ShaftInput:
 
     def __init__(self, node: ManagedNode, name: str, timeout: float, limits: RampLimits,
                  follow: Callable[[Point], None],
-                 change: Callable[[FollowerState, str], None]) -> None:
+                 change: Callable[[FollowerState, str], None], of_axis: bool = False) -> None:
         """Know no shaft yet."""
+        self._of_axis = of_axis
         self._node = node
         self._name = name
         self._limits = limits
         self._follow = follow
         self._change = change
-        self.watch = ShaftWatch(timeout)
+        self.watch = ShaftWatch(timeout, AxisPlausibility() if of_axis else None)
         self.answered = self.refused = 0
         self.worst = 0.0
         self._coasting: Coasting | None = None
@@ -179,7 +183,8 @@ class ShaftInput:
         if watch.last is None:
             return
         self._node.get_logger().error(f'{reason}: stopping on the curve')
-        self._coasting = Coasting(watch.last, watch.period, self._now() - self.age, self._limits,
+        limits = stop_of_axis(watch.last, self._limits) if self._of_axis else self._limits
+        self._coasting = Coasting(watch.last, watch.period, self._now() - self.age, limits,
                                   reason, state)
         self._change(FollowerState.STOPPING_ON_CURVE, reason)
         self._add_timer(watch.period, self._go_on)

@@ -18,6 +18,36 @@ from cam_motion.runtime.shaft_motion import ShaftMotion, ShaftState
 from cam_motion.runtime.ticks import NANOSECONDS
 
 
+def stop_of_axis(last: Point, limits: RampLimits) -> RampLimits:
+    """
+    Find limits for the stop of an axis that others follow, whatever its unit.
+
+    Nothing tells which speed of the shaft stands behind the speed of an axis. Its stop takes the
+    time of the shaft's from the speed at which that just comes to its full deceleration: twice
+    the acceleration over the jerk.
+
+    Parameters
+    ----------
+    last : Point
+        The last point of the axis.
+    limits : RampLimits
+        Limits of the shaft's stop [rad/s², rad/s³].
+
+    Returns
+    -------
+    RampLimits
+        Limits in the unit of the axis. An acceleration that is under way is taken back within an
+        eighth of that time.
+
+    """
+    rise = limits.acceleration / limits.jerk
+    speed, under_way = abs(last.velocity), abs(last.acceleration)
+    acceleration = max(speed / rise, under_way)
+    if not acceleration:
+        return limits
+    return RampLimits(acceleration, max(speed / rise ** 2, 4.0 * under_way / rise))
+
+
 class Coasting:
     """
     The shaft as an axis turns it on for itself, from the last point it has, until it stands.

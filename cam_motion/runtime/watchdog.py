@@ -9,16 +9,12 @@
 
 from __future__ import annotations
 
+from cam_motion.runtime.plausibility import Plausibility
 from cam_motion.runtime.point import Point
-from cam_motion.units import DEGREE
 
 _GRACE = 0.3  # within this time [s] a master asked to stop along with us begins to slow down
 _DEFAULT_PERIOD = 0.002
 _KNOWN_AFTER = 5  # points in a row that fit each other make a shaft that is trusted
-_PER_GAP = 0.1  # share of the way by which a fluctuating shaft may miss it over lost ticks
-_STEEPEST = 5000.0  # acceleration that no shaft has [rad/s²]: its speed has stepped
-_STEP = 1e-6  # of the speed that is rounding [rad/s]
-_TOLERANCE = 1e-3  # by which an angle may miss what speed and time lead to [rad]
 
 
 class ShaftWatch:
@@ -34,6 +30,8 @@ class ShaftWatch:
     ----------
     timeout : float
         How long the shaft may be silent [s].
+    plausible : Plausibility, optional
+        What its points cannot do; None takes that of a shaft in radians.
 
     Attributes
     ----------
@@ -50,9 +48,10 @@ class ShaftWatch:
 
     """
 
-    def __init__(self, timeout: float) -> None:
+    def __init__(self, timeout: float, plausible: Plausibility | None = None) -> None:
         """Know nothing yet."""
         self.timeout = timeout
+        self._plausible = plausible or Plausibility()
         self.last: Point | None = None
         self.period = _DEFAULT_PERIOD
         self.missed = 0
@@ -83,20 +82,21 @@ class ShaftWatch:
             Whether it goes on from the shaft that is known.
 
         """
-        last = self.last
+        last, plausible = self.last, self._plausible
         if last is not None:
             phi, omega, _, sec, nanosec = point
             phi_0, omega_0, _, sec_0, nanosec_0 = last
             step = sec - sec_0 + 1e-9 * (nanosec - nanosec_0)
             # the trapezoidal rule
             miss = phi - phi_0 - 0.5 * (omega + omega_0) * step
-            if step > 0.0 and -_TOLERANCE <= miss <= _TOLERANCE:
+            if step > 0.0 and -plausible.tolerance <= miss <= plausible.tolerance:
                 if not 0.5 * self.period < step < 1.5 * self.period:
                     self._note_step(step)
                 if self._fitting < _KNOWN_AFTER:
                     self._fitting += 1
             elif not self._excused(point, last, step, miss):
                 return False
+        plausible.learn(point, self.period)
         self.last = point
         self._arrival = now
         self.astray = 0
@@ -104,14 +104,10 @@ class ShaftWatch:
 
     def _excused(self, point: Point, last: Point, step: float, miss: float) -> bool:
         """Look closer at a point that does not fit the last one at first sight."""
-        way = 0.5 * (point.velocity + last.velocity) * step
-        # ticks may have been lost while the speed changed, or while it fluctuated
-        room = _TOLERANCE + 0.5 * abs((point.velocity - last.velocity) * step)
-        if step > 1.5 * self.period:
-            room += _PER_GAP * abs(way)
+        plausible = self._plausible
         stands = point.velocity == 0.0 == last.velocity
-        steady = abs(point.velocity - last.velocity) <= _STEEPEST * step + _STEP
-        if abs(miss) <= room and (step >= 0.0 and steady or stands):
+        fits = plausible.accepts(point, last, step, miss, step > 1.5 * self.period)
+        if fits and (step >= 0.0 and plausible.is_steady(point, last, step) or stands):
             # a time base that begins anew is no harm to a shaft that stands
             self._fitting = min(_KNOWN_AFTER, self._fitting + 1)
             if step > 0.0:
@@ -119,16 +115,17 @@ class ShaftWatch:
             return True
         if not self.known:
             self._fitting = 0
+            plausible.forget()
             return True
         self.refused += 1
         self.astray += 1
         self.reason = (
             f'a shaft point {step:+.3g} s from the last one is at '
-            f'{point.position / DEGREE:.6g} deg, not near '
-            f'{(last.position + way) / DEGREE:.6g} deg (is there a second master?)')
-        if abs(miss) <= room and step >= 0.0:
+            f'{plausible.place(point.position)}, not near '
+            f'{plausible.place(point.position - miss)} (is there a second master?)')
+        if fits and step >= 0.0:
             self.reason = (f'the speed of the shaft steps from {last.velocity:.6g} to '
-                           f'{point.velocity:.6g} rad/s')
+                           f'{point.velocity:.6g} {plausible.speed_unit}')
         return False
 
     def _note_step(self, step: float) -> None:
@@ -190,6 +187,7 @@ class ShaftWatch:
     def forget(self) -> None:
         """Begin anew: the next points may come from anywhere."""
         self.last, self._fitting, self.astray, self.reason = None, 0, 0, ''
+        self._plausible.forget()
 
     def begin_stop(self, now: float) -> None:
         """

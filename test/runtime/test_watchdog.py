@@ -7,13 +7,19 @@
 # language governing permissions and limitations under the License.
 """Telling one shaft from another, lost ticks from another rate, silence from rest."""
 
-from cam_motion.runtime.coasting import Coasting
+from dataclasses import replace
+
+from cam_motion.motion.profile import CamProfile
+from cam_motion.motion.segment import segment
+from cam_motion.runtime.coasting import Coasting, stop_of_axis
 from cam_motion.runtime.follower_settings import FollowerState
+from cam_motion.runtime.motion_over_angle import CoupledCam
+from cam_motion.runtime.plausibility import AxisPlausibility
 from cam_motion.runtime.point import Point
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
 from cam_motion.runtime.watchdog import ShaftWatch
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
 
@@ -126,3 +132,63 @@ def test_all_that_had_the_same_last_point_come_to_rest_together(speed, ticks, on
     assert points[-1][1:3] == (0.0, 0.0)
     for a, b in zip([last, *points], points):
         assert abs(b.velocity - a.velocity) <= 150.0 * 0.002 * (1.0 + 1e-9)
+
+
+FEEDER = CoupledCam(CamProfile([
+    segment('feed', end_deg=80.0, lift=0.3, law='modified_trapezoid'),
+    segment('wait', end_deg=360.0)], accumulate=True))
+
+
+def setpoints_of(scale, speed, ticks):
+    """Give the setpoints of a feeder whose unit is 1/scale metres, while the shaft starts."""
+    shaft, axis, found = running(speed), replace(FEEDER, scale=scale), []
+    for k in range(ticks):
+        _, omega, alpha, *time = point_of(shaft, k)
+        y, slope, bend, _ = axis.sample(point_of(shaft, k).position)
+        found.append(Point(y, slope * omega, bend * omega ** 2 + slope * alpha, *time))
+    return found
+
+
+@pytest.mark.parametrize('scale', [1e-3, 1.0, 1e3, -1e6])
+@given(st.floats(1.0, 40.0), st.lists(st.integers(1, 8), max_size=150))
+@settings(max_examples=20, deadline=None)
+def test_an_axis_is_known_by_its_setpoints_whatever_its_unit(scale, speed, gaps):
+    """A feeder in mm is the same as one in m: none of its setpoints is taken for another's."""
+    watch, points = ShaftWatch(0.2, AxisPlausibility()), setpoints_of(scale, speed, 1400)
+    k = 300
+    assert all(watch.note(point, 0.0) for point in points[:k])
+    for step in [*gaps, *[1] * 100]:
+        k = min(k + step, len(points) - 1)
+        if points[k] is not watch.last:
+            assert watch.note(points[k], 0.0), watch.reason
+    assert watch.known and watch.refused == 0
+
+
+@pytest.mark.parametrize('scale', [1e-3, 1.0, 1e3, 1e6])
+def test_what_an_axis_cannot_do_is_refused_whatever_its_unit(scale):
+    points = setpoints_of(scale, 20.0, 1400)
+    # in the middle of a feed, where it is fastest
+    k = max(range(1000, 1400), key=lambda k: abs(points[k].velocity))
+    last, then = points[k - 1], points[k]
+    for alien in (then._replace(position=then.position + 0.01 * scale),
+                  then._replace(position=last.position, velocity=0.0, acceleration=0.0),
+                  then._replace(position=0.0, velocity=0.0, acceleration=0.0)):
+        watch = ShaftWatch(0.2, AxisPlausibility())
+        assert all(watch.note(point, 0.0) for point in points[:k])
+        assert not watch.note(alien, 0.0)
+        assert 'deg' not in watch.reason and watch.note(then, 0.0)
+
+
+@pytest.mark.parametrize('scale', [1e-3, 1.0, 57.3, 1e3])
+def test_an_axis_that_follows_another_stops_in_the_same_time_whatever_the_unit(scale):
+    last = Point(0.0, 6.0 * scale, 0.0, 0, 0)
+    coasting = Coasting(last, 0.002, 0.0, stop_of_axis(last, RAMP), '', FollowerState.HELD)
+    points = list(coasting.due(10.0))
+    assert coasting.over and len(points) in (50, 51)  # 0.1 s
+    assert points[-1].position == pytest.approx(0.3 * scale)
+    # an acceleration under way is taken back soon, wherever in a feed it is caught
+    for point in setpoints_of(scale, 20.0, 1400)[1000:]:
+        coasting = Coasting(point, 0.002, 0.0, stop_of_axis(point, RAMP), '', FollowerState.HELD)
+        points = list(coasting.due(1e4))
+        assert coasting.over and len(points) <= 60
+        assert abs(points[-1].position - point.position) < 0.5 * scale
