@@ -44,6 +44,12 @@ ONLY_CAM = 'cam'
 Values = Mapping[str, Any]
 """Parameters of one node by flat name."""
 
+Reach = tuple[float, float]
+"""Lowest and highest position of an axis."""
+
+ANYWHERE: Reach = (-math.inf, math.inf)
+"""Reach of an axis that accumulates, or of which nothing is known."""
+
 
 @dataclass(frozen=True)
 class CoupledAxis(Axis):
@@ -159,7 +165,7 @@ def split_below(given: Values, names: Iterable[str],
     return own, below
 
 
-def build_axis(name: str, given: Values) -> CoupledAxis:
+def build_axis(name: str, given: Values, reach: Reach = ANYWHERE) -> CoupledAxis:
     """
     Check the parameters of an axis and compile its cams.
 
@@ -169,6 +175,8 @@ def build_axis(name: str, given: Values) -> CoupledAxis:
         Name of the axis.
     given : Mapping[str, Any]
         Parameters by flat name (``feed.end_deg``).
+    reach : tuple[float, float]
+        Between which places the axis stays that this one follows.
 
     Returns
     -------
@@ -222,13 +230,17 @@ def build_axis(name: str, given: Values) -> CoupledAxis:
     if not problems:
         layout = Layout(profiles, couplings, active)
         try:
-            layout.check_range(limits)
+            # engaged where it stands, it gets its place between the limits by engaging
+            layout.check_range(limits, anywhere=values['engage.slave'] == 'relative' and (
+                not values['engage_at_start']))
         except TransitionError as error:
-            problems.append(Problem('limits', None, str(error)))
+            side = 'lowest' if limits.highest is None else 'highest'
+            problems.append(Problem(f'limits.{side}', getattr(limits, side), str(error)))
     if problems:
         raise ConfigurationError(problems)
     return CoupledAxis(name, profiles[active[0]], values['unit'], limits, layout=layout,
-                       settings=_settings(values, limits), values=values, tracks=tracks)
+                       settings=_settings(values, limits, couplings[active[0]].ratio, reach),
+                       values=values, tracks=tracks)
 
 
 def stepping_cams(given: Values) -> dict[str, Continuity]:
@@ -281,18 +293,25 @@ def _limits(values: Values) -> tuple[Limits, list[Problem]]:
         return Limits(), list(error.problems)
 
 
-def _settings(values: Values, limits: Limits) -> FollowerSettings:
+def _settings(values: Values, limits: Limits, ratio: float, reach: Reach) -> FollowerSettings:
+    on_shaft = values['follows'] == axis_parameters.SHAFT
+    # over another axis angles are those of the cam, which turns by the ratio [rad] per its unit
+    per = 1.0 if on_shaft else 1.0 / abs(ratio)
+    degree = per * DEGREE
+
     def timing(name: str) -> Timing:
         return Timing(
-            At(values[f'{name}.at']), values[f'{name}.span_deg'] * DEGREE,
-            values[f'{name}.longest_deg'] * DEGREE, values.get(f'{name}.angle_deg', 0.0) * DEGREE)
+            At(values[f'{name}.at']), values[f'{name}.span_deg'] * degree,
+            values[f'{name}.longest_deg'] * degree, values.get(f'{name}.angle_deg', 0.0) * degree,
+            360.0 * degree, 360.0 * degree, reach)
+    ramp = RampLimits(values['shaft_acceleration'] * per, values['shaft_jerk'] * per)
     return FollowerSettings(
-        limits, RampLimits(values['shaft_acceleration'], values['shaft_jerk']),
+        limits, ramp,
         timing('engage'), timing('disengage'), timing('change'), timing('resume'),
         master_relative=values['engage.master'] == 'relative',
         slave_relative=values['engage.slave'] == 'relative',
         start_position=values['start_position'], stop_position=values['disengage.position'],
-        obeyed=values['follows'] == axis_parameters.SHAFT)
+        obeyed=on_shaft)
 
 
 def _build_cam(given: Values) -> tuple[CamProfile, Coupling]:

@@ -11,17 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 import math
 
 from cam_motion.errors import ConfigurationError, Problem
-from cam_motion.io.axis import build_axis, CoupledAxis, Values
+from cam_motion.io.axis import ANYWHERE, build_axis, CoupledAxis, Reach, Values
 from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.motion.limits import Limits, QUANTITIES, SpeedBound
-from cam_motion.runtime.demand import Demand
+from cam_motion.runtime.demand import AnyPhaseCascade, Demand, Demands
+from cam_motion.runtime.layout import EQUAL, LARGEST_SHARE, MOST_TURNS
 from cam_motion.runtime.motion_over_angle import Cascade, Motion
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.ramp_room import RampRoom
-from cam_motion.units import DEGREE, rate_text, RPM
+from cam_motion.units import DEGREE, rate_text, RPM, TURN
 
 _STEADY = RampLimits(0.0, 0.0)
 
@@ -36,12 +38,16 @@ class CascadedAxis(CoupledAxis):
     motion : Motion
         Its motion over the angle of the shaft, through all axes between.
     period : float
-        Shaft angle after which the motion repeats [rad].
+        Shaft angle after which the motion repeats [rad]; for one that never does, or after very
+        many turns, that of the axis on the shaft.
+    course : Demands
+        What the motion demands for ever.
 
     """
 
     motion: Motion = field(kw_only=True)
     period: float = field(kw_only=True)
+    course: Demands = field(kw_only=True)
 
     def bound_by(self, limits: Limits) -> SpeedBound | None:
         """
@@ -58,7 +64,7 @@ class CascadedAxis(CoupledAxis):
             The speed and what holds it there; None where nothing does.
 
         """
-        omega = Demand(self.motion, 0.0, self.period).highest_speed(limits, _STEADY)
+        omega = self.course.highest_speed(limits, _STEADY)
         if math.isinf(omega):
             return None
         names = [name for order, name in enumerate(QUANTITIES[1:], 1) if limits.of_order(order)]
@@ -108,11 +114,29 @@ def _cascaded(chain: list[CoupledAxis | None]) -> CoupledAxis | None:
     links = [link for link in chain if link is not None]
     if len(links) < len(chain):
         return chain[0]
-    motion: Motion = links[-1].layout.motion
+    first = links[-1].layout
+    motion: Motion = first.motion
+    period, gain, course = first.period, first.advance * first.period / TURN, first.course
     for link in reversed(links[:-1]):
-        motion = Cascade(link.layout.motion, motion)
+        outer = link.layout
+        motion = Cascade(outer.motion, motion)
+        # both repeat together where the inner one gains a rational share of the outer's period
+        share = gain / outer.period
+        rational = Fraction(share).limit_denominator(LARGEST_SHARE) if math.isfinite(share) else (
+            None)
+        if rational is None or abs(share - rational) > EQUAL * max(1.0, abs(share)):
+            period = gain = math.nan
+        else:
+            period *= rational.denominator
+            gain = outer.advance * outer.period / TURN * rational.numerator
+        if rational is not None and max(period / TURN, abs(rational.numerator)) <= MOST_TURNS:
+            course = Demand(motion, 0.0, period)
+        else:
+            course = AnyPhaseCascade(outer.course, course)
     own = {name: getattr(links[0], name) for name in CoupledAxis.__dataclass_fields__}
-    return CascadedAxis(**own, motion=motion, period=links[-1].layout.period)
+    if not period <= LARGEST_SHARE * TURN:
+        period = first.cycle.period
+    return CascadedAxis(**own, motion=motion, period=period, course=course)
 
 
 def axes_of(sections: Mapping[str, Values]) -> dict[str, CoupledAxis]:
@@ -141,6 +165,28 @@ def axes_of(sections: Mapping[str, Values]) -> dict[str, CoupledAxis]:
     return {name: axis for name, axis in found.items() if axis is not None}
 
 
+def reach_of(axis: CoupledAxis) -> Reach:
+    """
+    Find between which positions an axis stays as it is configured.
+
+    Parameters
+    ----------
+    axis : CoupledAxis
+        The axis.
+
+    Returns
+    -------
+    tuple[float, float]
+        The lowest and the highest; infinite for one that accumulates, or that adds its motion to
+        the position at which it stands.
+
+    """
+    if axis.layout.accumulates or axis.values['engage.slave'] == 'relative':
+        return ANYWHERE
+    y = axis.layout.course.values[0]
+    return float(y.min()), float(y.max())
+
+
 def ramp_room(axes: Iterable[CoupledAxis]) -> RampRoom:
     """
     Find the room that the limits of axes leave for the acceleration of the shaft.
@@ -157,8 +203,8 @@ def ramp_room(axes: Iterable[CoupledAxis]) -> RampRoom:
 
     """
     return RampRoom(
-        (axis.motion, axis.period, axis.limits) if isinstance(axis, CascadedAxis)
-        else (axis.layout.motion, axis.layout.period, axis.limits) for axis in axes)
+        (axis.course if isinstance(axis, CascadedAxis) else axis.layout.course, axis.limits)
+        for axis in axes)
 
 
 def speed_problems(axis: CoupledAxis, omega: float) -> list[Problem]:

@@ -22,8 +22,9 @@ CAM = (
                   choices=('return', 'accumulate')),
     ParameterSpec('segments', 'string_list', REQUIRED, 'Names of the segments, in order.'),
     ParameterSpec('ratio', 'double', 1.0,
-                  'Turns of the cam per turn of the shaft, or per unit of the axis that it '
-                  'follows; negative turns it backwards.'),
+                  'Turns of the cam per turn of the shaft; over another axis, radians of the cam '
+                  'per unit of that axis (6.283185307 for one turn per unit). Negative turns it '
+                  'backwards.'),
     ParameterSpec('phase_deg', 'double', 0.0, 'Angle of the cam at shaft angle 0.', 'deg'),
     ParameterSpec('scale', 'double', 1.0, 'What the lifts are multiplied by.'),
     ParameterSpec('offset', 'double', 0.0, 'What is added to the position.', 'unit'),
@@ -42,17 +43,19 @@ def _timing(name: str, meaning: str) -> tuple[ParameterSpec, ...]:
                   'the angle at which the axis was held, when the shaft has come round.')
         choices: tuple[str, ...] = ('now', 'angle')
     else:
-        begins = (f'When {meaning} begins: now, at a shaft angle, at the end of the cycle, or as '
-                  'soon as it fits within the limits.')
+        begins = (f'When {meaning} begins: now, at a shaft angle, at the end of the cycle of the '
+                  'cam (of all cams together, where several are in use), or as soon as it fits '
+                  'within the limits.')
         choices = ('now', 'angle', 'cycle_end', 'soonest')
     angle = () if name == 'resume' else (
-        ParameterSpec(f'{name}.angle_deg', 'double', 0.0, f'That angle, for {name}.at: angle.',
-                      'deg', least=0.0, most=360.0),)
+        ParameterSpec(f'{name}.angle_deg', 'double', 0.0,
+                      f'That angle, for {name}.at: angle; over another axis, angle of the cam but '
+                      'for its phase.', 'deg', least=0.0, most=360.0),)
     return (
         ParameterSpec(f'{name}.at', 'string', 'now', begins, choices=choices), *angle,
         ParameterSpec(f'{name}.span_deg', 'double', 90.0,
-                      'Shaft angle over which it goes, if the limits allow.', 'deg', least=1.0,
-                      most=3600.0),
+                      'Shaft angle over which it goes, if the limits allow; over another axis, '
+                      'angle of the cam.', 'deg', least=1.0, most=3600.0),
         ParameterSpec(f'{name}.longest_deg', 'double', 1440.0,
                       'Up to which it is lengthened if they do not.', 'deg', least=1.0,
                       most=36000.0),
@@ -74,12 +77,13 @@ CAM_AXIS = (
                   'unit/s²', above=0.0),
     ParameterSpec('limits.jerk', 'double', None, 'Largest jerk of the axis.', 'unit/s³',
                   above=0.0),
-    ParameterSpec('limits.lowest', 'double', None, 'Lowest position of an axis that returns.',
+    ParameterSpec('limits.lowest', 'double', None,
+                  'Lowest position; not for an axis that accumulates, which leaves any range.',
                   'unit'),
-    ParameterSpec('limits.highest', 'double', None, 'Highest position.', 'unit'),
+    ParameterSpec('limits.highest', 'double', None, 'Highest position, likewise.', 'unit'),
     ParameterSpec('shaft_acceleration', 'double', 30.0,
-                  'Acceleration of the shaft that every transition leaves room for.', 'rad/s²',
-                  least=0.0),
+                  'Acceleration of the shaft that every transition leaves room for; over another '
+                  'axis, of the cam.', 'rad/s²', least=0.0),
     ParameterSpec('shaft_jerk', 'double', 300.0, 'Jerk of the shaft likewise.', 'rad/s³',
                   least=0.0),
     ParameterSpec('engage_at_start', 'bool', True,
@@ -93,7 +97,8 @@ CAM_AXIS = (
                   'relative: engaging adds the cam to the position at which the axis stands.',
                   choices=('absolute', 'relative')),
     ParameterSpec('disengage.position', 'double', None,
-                  'Where the axis is to stand when disengaged; none: where it gets to.', 'unit'),
+                  'Where the axis is to stand when disengaged, for one that accumulates whole '
+                  'strokes further; none: where it gets to.', 'unit'),
     *(spec for name, meaning in TRANSITIONS.items() for spec in _timing(name, meaning)),
     ParameterSpec('dead_time', 'double', 0.0,
                   'By how much the axis runs ahead of the shaft, to make up for what its drive '

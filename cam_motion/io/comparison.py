@@ -19,7 +19,7 @@ from cam_motion.io.axis_states import durations, spells_of, within
 from cam_motion.io.recording import Track
 from cam_motion.motion.diagram import Axis
 from cam_motion.motion.piece import Array
-from cam_motion.runtime.demand import Demand
+from cam_motion.runtime.demand import Demand, Demands
 from cam_motion.runtime.motion_over_angle import CoupledCam, Motion
 from cam_motion.units import TURN
 import numpy as np
@@ -192,7 +192,7 @@ def _strokes(axis: Axis, phi: Array, position: Array) -> Array:
     """Find the whole strokes by which a belt lies ahead of its curve."""
     stroke = axis.profile.advance
     if isinstance(axis, CoupledAxis):
-        stroke = axis.layout.advance * axis.layout.period / TURN
+        stroke = axis.layout.stroke
     return np.asarray(stroke * np.rint((position - _motion(axis)(phi)[0]) / stroke))
 
 
@@ -242,9 +242,10 @@ def _peaks(axis: Axis) -> list[float]:
     motion = _motion(axis)
     if motion == CoupledCam(axis.profile):
         return [abs(axis.profile.curve.peak(order).value) for order in range(3)]
-    period = axis.period if isinstance(axis, CascadedAxis) else (
-        axis.layout.period if isinstance(axis, CoupledAxis) else TURN)
-    return [float(np.max(np.abs(row))) for row in Demand(motion, 0.0, period).values[:3]]
+    course: Demands = Demand(motion, 0.0, TURN)
+    if isinstance(axis, CoupledAxis):
+        course = axis.course if isinstance(axis, CascadedAxis) else axis.layout.course
+    return [float(np.max(np.abs(row))) for row in course.values[:3]]
 
 
 def _share(difference: Array, peak: float) -> Array:

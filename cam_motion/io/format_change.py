@@ -27,6 +27,7 @@ from cam_motion.runtime.interlock import Verdict
 from cam_motion.runtime.motion_over_angle import Cascade, Motion
 from cam_motion.runtime.planning import check_speed, next_angle, Plan, TransitionError
 from cam_motion.runtime.ramp import RampLimits
+from cam_motion.runtime.ways import going_over
 from cam_motion.units import DEGREE, RPM, TURN
 
 _TRIES = 24  # shaft angles within a turn at which a change is tried
@@ -259,8 +260,8 @@ def _transitions(old: Mapping[str, CoupledAxis], moving: Mapping[str, CoupledAxi
     except TransitionError as error:
         raise TransitionError(f'{name}: {error}') from None
     plans = {name: fixed_plan(
-        old[name].layout.motion, axis.layout.continuing(old[name].layout, at, sense), at,
-        sense * span, axis.settings, speed) for name, axis in moving.items()}
+        old[name].layout.motion, going_over(old[name].layout, axis.layout), at, sense * span,
+        axis.settings, speed) for name, axis in moving.items()}
     for name, plan in plans.items():
         _check_allowed(name, plan.highest_speed, speed, span)
     return plans

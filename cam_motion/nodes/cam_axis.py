@@ -15,7 +15,8 @@ import math
 from typing import Any
 
 from cam_motion.errors import ConfigurationError
-from cam_motion.io.axis import axis_table, build_axis, CoupledAxis
+from cam_motion.io.axis import ANYWHERE, axis_table, build_axis, CoupledAxis, Reach
+from cam_motion.io.axis_limits import axes_of, reach_of
 from cam_motion.io.axis_parameters import is_coupling, SHAFT
 from cam_motion.io.format_parameters import STAGED
 from cam_motion.io.parameters import ParameterSpec
@@ -23,7 +24,7 @@ from cam_motion.motion.limits import SpeedBound
 from cam_motion.nodes import diagnostics
 from cam_motion.nodes.axis_outputs import AxisOutputs, DriveValues
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.parameters import values_of
+from cam_motion.nodes.parameters import section_of, values_of
 from cam_motion.nodes.qos import LATCHED, SETPOINTS
 from cam_motion.nodes.runner import run
 from cam_motion.nodes.shaft_input import ShaftInput
@@ -96,7 +97,8 @@ class CamAxis(ManagedNode):
             self.get_logger().info(
                 f'no parameters for a node named {self.get_name()}: is that the axis? '
                 'Give its name with -r __node:=NAME')
-        self.axis: CoupledAxis = build_axis(self.get_name(), own_values(values))
+        self._reach = _reach_beside(values)
+        self.axis: CoupledAxis = build_axis(self.get_name(), own_values(values), self._reach)
         settings = self.axis.values
         self._follower = FormatFollower(
             self.axis.layout, self.axis.settings, settings['engage_at_start'])
@@ -304,7 +306,8 @@ class CamAxis(ManagedNode):
             return refusal
         given = own_values({**values_of(self), **changes})
         try:
-            axis = build_axis(self.get_name(), {k: v for k, v in given.items() if v is not None})
+            axis = build_axis(self.get_name(), {
+                k: v for k, v in given.items() if v is not None}, self._reach)
         except ConfigurationError as error:
             return '; '.join(map(str, error.problems))
         follower = self._follower
@@ -360,6 +363,14 @@ class CamAxis(ManagedNode):
             return diagnostics.ERROR, values
         bad = shaft.refused or self.outputs.misses or reason
         return diagnostics.WARN if bad else diagnostics.OK, values
+
+
+def _reach_beside(values: Mapping[str, Any]) -> Reach:
+    """Find where the axis that is followed stays, if a parameter file of the process says it."""
+    follows = values.get('follows', SHAFT)
+    section = {} if follows == SHAFT else section_of(follows)
+    axis = axes_of({follows: section}).get(follows) if section else None
+    return ANYWHERE if axis is None else reach_of(axis)
 
 
 def main(argv: list[str] | None = None) -> int:

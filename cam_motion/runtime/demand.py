@@ -5,10 +5,11 @@
 # writing, software distributed under the License is distributed on an "AS IS" BASIS, WITHOUT
 # WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied. See the License for the specific
 # language governing permissions and limitations under the License.
-"""What a motion over a range of shaft angles demands of its axis, and how fast it may run."""
+"""What a motion demands of its axis, over a range of shaft angles or for ever, and how fast."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 import math
@@ -41,39 +42,13 @@ class Peaks(NamedTuple):
     highest: float
 
 
-@dataclass(frozen=True)
-class Demand:
-    """
-    A motion over a range of shaft angles.
+class Demands:
+    """What a motion demands, whatever that is known from."""
 
-    Attributes
-    ----------
-    motion : Motion
-        The motion.
-    low, high : float
-        The range [rad]; low < high.
-
-    """
-
-    motion: Motion
-    low: float
-    high: float
-
-    @cached_property
+    @property
     def values(self) -> Array:
         """Position and three derivatives, magnitudes but for the position: shape (4, n)."""
-        joints = self.motion.joints(self.low, self.high)
-        edges = np.unique(np.concatenate([[self.low, self.high], joints]))
-        parts = np.maximum(1, np.ceil(np.diff(edges) / _COARSEST)).astype(int)
-        edges = np.append(np.concatenate([
-            np.linspace(a, b, count, endpoint=False)
-            for a, b, count in zip(edges, edges[1:], parts)]), edges[-1])
-        shares = np.linspace(0.0, 1.0, _POINTS)
-        inside = np.minimum(_INSIDE, 0.25 * np.diff(edges))
-        starts, spans = edges[:-1] + inside, np.diff(edges) - 2.0 * inside
-        values = self.motion((starts[:, None] + spans[:, None] * shares).ravel())
-        values[1:] = np.abs(values[1:])
-        return values
+        raise NotImplementedError
 
     def peaks(self, speed: float, ramp: RampLimits) -> Peaks:
         """
@@ -148,6 +123,89 @@ class Demand:
         y = self.values[0]
         slack = 1e-9 * (1.0 + float(np.ptp(y)))
         return bool(np.min(y) >= low - slack and np.max(y) <= high + slack)
+
+
+@dataclass(frozen=True)
+class Demand(Demands):
+    """
+    A motion over a range of shaft angles.
+
+    Attributes
+    ----------
+    motion : Motion
+        The motion.
+    low, high : float
+        The range [rad]; low < high.
+
+    """
+
+    motion: Motion
+    low: float
+    high: float
+
+    @cached_property
+    def values(self) -> Array:
+        """Position and three derivatives, magnitudes but for the position: shape (4, n)."""
+        joints = self.motion.joints(self.low, self.high)
+        edges = np.unique(np.concatenate([[self.low, self.high], joints]))
+        parts = np.maximum(1, np.ceil(np.diff(edges) / _COARSEST)).astype(int)
+        edges = np.append(np.concatenate([
+            np.linspace(a, b, count, endpoint=False)
+            for a, b, count in zip(edges, edges[1:], parts)]), edges[-1])
+        shares = np.linspace(0.0, 1.0, _POINTS)
+        inside = np.minimum(_INSIDE, 0.25 * np.diff(edges))
+        starts, spans = edges[:-1] + inside, np.diff(edges) - 2.0 * inside
+        values = self.motion((starts[:, None] + spans[:, None] * shares).ravel())
+        values[1:] = np.abs(values[1:])
+        return values
+
+
+@dataclass(frozen=True)
+class AnyPhase(Demands):
+    """
+    A sum of motions, each of which may stand anywhere while the others do.
+
+    Attributes
+    ----------
+    parts : Sequence[Demands]
+        The motions.
+
+    """
+
+    parts: Sequence[Demands]
+
+    @cached_property
+    def values(self) -> Array:
+        """Give lowest and highest position, beside the worst of everything: shape (4, 2)."""
+        return np.array([[
+            sum(float(pick(part.values[row])) for part in self.parts) for pick in picks]
+            for row, picks in enumerate([(np.min, np.max), *[(np.max, np.max)] * 3])])
+
+
+@dataclass(frozen=True)
+class AnyPhaseCascade(Demands):
+    """
+    A motion that follows another one, and may stand anywhere while that does.
+
+    Attributes
+    ----------
+    outer, inner : Demands
+        What the axis demands over what it follows, and that over the shaft angle.
+
+    """
+
+    outer: Demands
+    inner: Demands
+
+    @cached_property
+    def values(self) -> Array:
+        """Give the chain rule with the worst of the outer motion everywhere: shape (4, n)."""
+        y, (y1, y2, y3) = self.outer.values[0], self.outer.values[1:].max(axis=1)
+        _, slope, bend, jerk = self.inner.values
+        even = np.arange(slope.size) % 2 == 0
+        return np.array([
+            np.where(even, y.min(), y.max()), y1 * slope, y2 * slope ** 2 + y1 * bend,
+            y3 * slope ** 3 + 3.0 * y2 * slope * bend + y1 * jerk])
 
 
 def _root(left: Array, y2: Array) -> float:

@@ -15,9 +15,9 @@ from cam_motion.runtime.follower_settings import FollowerState
 from cam_motion.runtime.following import AT_REST, Following, TO_BE_RESET
 from cam_motion.runtime.layout import Layout
 from cam_motion.runtime.motion_over_angle import Standstill
-from cam_motion.runtime.planning import At, check_speed, Goal, Plan, TransitionError
+from cam_motion.runtime.planning import At, check_speed, Plan, TransitionError
 from cam_motion.runtime.recipe import Recipe
-from cam_motion.units import TURN
+from cam_motion.runtime.ways import going_over, over_cycles, standing
 
 _ON_ITS_WAY = (FollowerState.WAITING, FollowerState.ENGAGING, FollowerState.IN_SYNC,
                FollowerState.CHANGING)
@@ -63,7 +63,12 @@ class Follower(Following):
                     # a change had been waiting when it was told to stand
                     return self.change(self.layout)
             return self.plan
-        return self._join(self.settings.engage, self._engaged_layout)
+        timing, layout = self.settings.engage, replace(self.layout, origin=0.0, shift=0.0)
+        if self.settings.master_relative:
+            timing = replace(timing, angle=timing.angle if timing.at is At.ANGLE else 0.0)
+        else:
+            timing = over_cycles(timing, layout)
+        return self._join(timing, self._engaged_layout)
 
     def disengage(self) -> Plan | None:
         """
@@ -94,12 +99,8 @@ class Follower(Following):
                 self.sample(shaft.phi)[0])
             self._adopt(Standstill(position), FollowerState.DISENGAGED)
             return None
-        timing, now = self.settings.disengage, self.sample
-
-        def target(start: float, end: float) -> Goal:
-            # halfway the blend neither hurries nor turns back
-            at = end if timing.at is At.CYCLE_END else 0.5 * (start + end)
-            return Standstill(now(at)[0] if stop is None else stop)
+        timing = over_cycles(self.settings.disengage, self.layout)
+        target = standing(self.layout, stop, timing.at is At.CYCLE_END)
         return self._begin(Recipe(
             target, timing, FollowerState.DISENGAGING, FollowerState.DISENGAGED))
 
@@ -139,10 +140,9 @@ class Follower(Following):
                     self._set_motion(self.layout.motion)
             return None
         bound = layout.speed_bound(self.settings.limits)
-        check_speed(bound, abs(shaft.omega))
-        old = self.layout
+        check_speed(bound, abs(shaft.omega), self.settings.change.turn)
         return self._begin(Recipe(
-            lambda start, _: layout.continuing(old, start, self._sense), self.settings.change,
+            going_over(self.layout, layout), over_cycles(self.settings.change, self.layout),
             bound=bound), dry)
 
     def reset(self) -> Plan | None:
@@ -172,7 +172,8 @@ class Follower(Following):
             return None
         timing = self.settings.resume
         if timing.at is At.ANGLE and self._held_at is not None:
-            timing = replace(timing, angle=self._held_at % TURN)
+            # where the cams, and not only the shaft, are again where they were
+            timing = replace(timing, angle=self._held_at, every=self.layout.cycle.period)
         return self._join(timing, self._ahead)
 
     # What happens to it
@@ -212,10 +213,12 @@ class Follower(Following):
 
     # How
 
-    def _engaged_layout(self, y: float, start: float) -> Layout:
+    def _engaged_layout(self, y: float, start: float, sense: float) -> Layout:
         """Anchor the layout for an axis that engages from a position at a shaft angle."""
         settings = self.settings
         layout = replace(self.layout, origin=0.0, shift=0.0)
         if settings.master_relative:
             layout = layout.begun_at(start)
-        return layout.lifted_to(y, start) if settings.slave_relative else layout.ahead_of(y, start)
+        if settings.slave_relative:
+            return layout.lifted_to(y, start)
+        return layout.ahead_of(y, start, sense)

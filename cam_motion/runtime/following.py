@@ -15,19 +15,20 @@ from cam_motion.motion.limits import Limits, SpeedBound
 from cam_motion.runtime.follower_settings import FollowerSettings, FollowerState
 from cam_motion.runtime.layout import Layout
 from cam_motion.runtime.motion_over_angle import Motion, Standstill
+from cam_motion.runtime.pace import pace_of, speed_ahead
 from cam_motion.runtime.planning import (
     check_speed,
-    pace_of,
     Plan,
     plan_transition,
-    speed_ahead,
     Timing,
     TransitionError,
+    Way,
 )
 from cam_motion.runtime.recipe import Anchor, Joining, Leaving, Recipe
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.runtime.transition import Blend
-from cam_motion.units import RPM, TURN
+from cam_motion.runtime.ways import over_cycles, straight
+from cam_motion.units import TURN
 
 _SAME = 1e-9  # positions this close, as a share of what they are, are the same
 _MOST_NESTED = 4  # transitions begun on top of others that still go on
@@ -122,10 +123,6 @@ class Following:
         """Give the shaft as the axis last heard it, at zero if never, and the motion over it."""
         return self._shaft or ShaftState(0.0, 0.0, 0.0), self.motion
 
-    @property
-    def _sense(self) -> float:
-        return -1.0 if self._shaft is not None and self._shaft.omega < 0.0 else 1.0
-
     # While the shaft turns
 
     def _progress(self, phi: float) -> None:
@@ -158,7 +155,7 @@ class Following:
                 self.state = FollowerState.IN_SYNC
                 return
             self._set_motion(Standstill(self.sample(phi)[0]))
-            self._await(Joining(self.settings.engage, self._ahead))
+            self._await(Joining(over_cycles(self.settings.engage, self.layout), self._ahead))
         elif self._rests_in_place:
             self._rests_in_place = False
             self._rejoin_standing(self._ahead)
@@ -244,8 +241,9 @@ class Following:
         bound, shaft = self.speed_bound, self._shaft
         if bound is None or shaft is None or abs(shaft.omega) <= bound.omega * (1.0 + 1e-3):
             return ''
-        return (f'the shaft runs at {abs(shaft.omega) / RPM:.4g} cycles/min, the axis keeps its '
-                f'limits up to {bound.omega / RPM:.4g} ({bound.segment}: {bound.quantity})')
+        rpm = self.settings.change.turn / 60.0
+        return (f'the shaft runs at {abs(shaft.omega) / rpm:.4g} cycles/min, the axis keeps its '
+                f'limits up to {bound.omega / rpm:.4g} ({bound.segment}: {bound.quantity})')
 
     @property
     def waits_for(self) -> str:
@@ -253,14 +251,15 @@ class Following:
         bound, shaft = self._bound_to_join, self._shaft
         if self._joining is None or bound is None or shaft is None:
             return ''
-        return (f'joins when the shaft has slowed down to {bound.omega / RPM:.4g} cycles/min '
-                f'({bound.segment}: {bound.quantity}); it runs at {abs(shaft.omega) / RPM:.4g}')
+        rpm = self.settings.change.turn / 60.0
+        return (f'joins when the shaft has slowed down to {bound.omega / rpm:.4g} cycles/min '
+                f'({bound.segment}: {bound.quantity}); it runs at {abs(shaft.omega) / rpm:.4g}')
 
     # How
 
-    def _ahead(self, y: float, start: float) -> Layout:
+    def _ahead(self, y: float, start: float, sense: float) -> Layout:
         """Anchor the layout for an axis that comes back to it at a shaft angle."""
-        return self.layout.ahead_of(y, start)
+        return self.layout.ahead_of(y, start, sense)
 
     def _rejoin_standing(self, anchored: Anchor) -> bool:
         """Be on the curve if the shaft stands and the axis is there."""
@@ -268,7 +267,7 @@ class Following:
         if shaft is None or shaft.omega or shaft.alpha:
             return False
         y = self.sample(shaft.phi)[0]
-        layout = anchored(y, shaft.phi)
+        layout = anchored(y, shaft.phi, 1.0)
         there = layout.motion.sample(shaft.phi)[0]
         if abs(there - y) > _SAME * max(abs(y), abs(there), 1e-6):
             return False
@@ -286,12 +285,14 @@ class Following:
         too_fast = self._too_fast
         if too_fast is not None:
             if not self.settings.obeyed:
-                check_speed(too_fast, speed_ahead(shaft, self.settings.shaft_ramp))
+                check_speed(too_fast, speed_ahead(shaft, self.settings.shaft_ramp), timing.turn)
             self._await(Joining(timing, anchored))
             return None
         y = self.sample(shaft.phi)[0]
-        return self._begin(Recipe(
-            lambda start, _: anchored(y, start), timing, FollowerState.ENGAGING))
+
+        def target(old: Motion, start: float, span: float) -> Way:
+            return straight(old, anchored(y, start, span), start, span)
+        return self._begin(Recipe(target, timing, FollowerState.ENGAGING))
 
     def _adopt(self, motion: Motion, state: FollowerState) -> None:
         """Take over a motion that is where the axis is."""

@@ -18,18 +18,19 @@ from cam_motion.runtime.follower import Follower
 from cam_motion.runtime.follower_settings import FollowerSettings, FollowerState
 from cam_motion.runtime.layout import Layout
 from cam_motion.runtime.motion_over_angle import Motion
+from cam_motion.runtime.pace import Pace
 from cam_motion.runtime.planning import (
     check_speed,
     next_angle,
-    Pace,
     Plan,
     plan_transition,
+    Target,
     Timing,
     TransitionError,
 )
 from cam_motion.runtime.recipe import Leaving, Recipe
 from cam_motion.runtime.shaft_motion import ShaftState
-from cam_motion.runtime.transition import Blend
+from cam_motion.runtime.ways import going_over
 from cam_motion.units import DEGREE, RPM
 
 _STANDS = (FollowerState.DISENGAGED, FollowerState.HELD, FollowerState.FAULT)
@@ -203,8 +204,8 @@ class FormatFollower(Follower):
     def _planned(self, new: Format, start: float, sense: float) -> Plan:
         shaft = self._shaft
         speed = 0.0 if shaft is None else abs(shaft.omega)
-        layout = new.layout.continuing(self.layout, start, sense)
-        return fixed_plan(self.motion, layout, start, sense * new.span, new.settings, speed)
+        return fixed_plan(self.motion, going_over(self.layout, new.layout), start,
+                          sense * new.span, new.settings, speed)
 
     @property
     def speed_bound(self) -> SpeedBound | None:
@@ -231,8 +232,7 @@ class FormatFollower(Follower):
         if plan is not None and isinstance(plan.goal, Layout):
             self.layout = plan.goal
             timing = Timing(span=new.span, longest=new.settings.change.longest)
-            self._recipe = Recipe(
-                lambda start, _: new.layout.continuing(old, start, self._sense), timing)
+            self._recipe = Recipe(going_over(old, new.layout), timing)
         self.settings = new.settings
         self.scheduled = None
         self.on_taken()
@@ -279,8 +279,8 @@ def _nothing() -> None:
     """Stand in for a callback."""
 
 
-def fixed_plan(old: Motion, goal: Layout, start: float, span: float, settings: FollowerSettings,
-               speed: float) -> Plan:
+def fixed_plan(old: Motion, target: Target, start: float, span: float,
+               settings: FollowerSettings, speed: float) -> Plan:
     """
     Plan a transition whose angles are given.
 
@@ -288,8 +288,8 @@ def fixed_plan(old: Motion, goal: Layout, start: float, span: float, settings: F
     ----------
     old : Motion
         What the axis does before.
-    goal : Layout
-        What it goes over to, anchored.
+    target : Callable[[Motion, float, float], Way]
+        Makes the way to what it goes over to.
     start, span : float
         The angles [rad]; a negative span for a shaft that turns backwards.
     settings : FollowerSettings
@@ -303,7 +303,7 @@ def fixed_plan(old: Motion, goal: Layout, start: float, span: float, settings: F
         The transition, whether or not it keeps the limits at that speed.
 
     """
-    blend = Blend(old, goal.motion, start, span)
+    goal, blend = target(old, start, span)
     demand = Demand(blend, *sorted((start, blend.end)))
     return Plan(blend, goal, demand.peaks(speed, settings.shaft_ramp), speed,
                 demand.highest_speed(settings.limits, settings.shaft_ramp))
@@ -340,6 +340,5 @@ def shortest_plan(old: Layout, new: Layout, start: float, sense: float,
     """
     timing = Timing(span=settings.change.span, longest=settings.change.longest)
     return plan_transition(
-        old.motion, lambda at, _: new.continuing(old, at, sense),
-        ShaftState(start, sense * speed, 0.0), timing,
+        old.motion, going_over(old, new), ShaftState(start, sense * speed, 0.0), timing,
         Pace(speed, speed, settings.shaft_ramp, sense), settings.limits)

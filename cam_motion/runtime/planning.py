@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 import math
 from typing import NamedTuple, Protocol
@@ -19,14 +19,15 @@ from cam_motion.errors import CamMotionError
 from cam_motion.motion.limits import Limits, SpeedBound
 from cam_motion.runtime.demand import Demand, Peaks
 from cam_motion.runtime.motion_over_angle import Motion
-from cam_motion.runtime.ramp import RampLimits
+from cam_motion.runtime.pace import Pace
 from cam_motion.runtime.shaft_motion import ShaftState
 from cam_motion.runtime.transition import Blend
-from cam_motion.units import DEGREE, rate_text, RPM, TURN
+from cam_motion.units import DEGREE, rate_text, TURN
+import numpy as np
 
 _GROWTH = 1.25  # from one span that is too short to the next that is tried
 _LOOKS = 24  # places within one turn at which the soonest transition is looked for
-_OBEYS_WITHIN = 0.05  # how soon the shaft hears what it may [s]
+_PLACES = 65  # places at which a motion beyond its limits of position is looked at
 _AT_ANGLE = 1e-9  # an angle this near [rad] counts as reached
 
 
@@ -38,8 +39,15 @@ class Goal(Protocol):
         """Give the motion afterwards."""
 
 
-Target = Callable[[float, float], Goal]
-"""Makes the goal from the shaft angles at which the transition begins and ends [rad]."""
+class Way(NamedTuple):
+    """The ``goal`` of a transition, and the ``blend`` that leads to it."""
+
+    goal: Goal
+    blend: Blend
+
+
+Target = Callable[[Motion, float, float], Way]
+"""Makes the way from the old motion, the shaft angle at which it begins and its span [rad]."""
 
 
 class At(Enum):
@@ -78,14 +86,20 @@ class Timing:
     Attributes
     ----------
     at : At
-        ``now``; at a shaft ``angle``; at the ``cycle_end``; or as soon as the span fits within
-        the limits, looked for over one turn.
+        ``now``; at a shaft ``angle``; at the ``cycle_end``, which is the angle at which the cams
+        begin anew; or as soon as the span fits within the limits, looked for over one turn.
     span : float
         Shaft angle over which it goes, if the limits allow [rad]; positive.
     longest : float
         Up to which it is lengthened if they do not [rad].
     angle : float
-        The angle at which it begins, within a turn [rad].
+        The angle at which it begins, or the end of a cycle [rad].
+    every : float
+        Shaft angle after which that comes again [rad].
+    turn : float
+        One turn of the cam, in what the axis follows: of another axis, in the unit of that.
+    reach : tuple[float, float]
+        Between which places what it follows stays.
 
     """
 
@@ -93,6 +107,30 @@ class Timing:
     span: float = 90.0 * DEGREE
     longest: float = 4.0 * TURN
     angle: float = 0.0
+    every: float = TURN
+    turn: float = TURN
+    reach: tuple[float, float] = (-math.inf, math.inf)
+
+    def can_end(self, phi: float, start: float, end: float) -> bool:
+        """
+        Tell whether a transition comes to its end.
+
+        Parameters
+        ----------
+        phi : float
+            Where what the axis follows is now [rad].
+        start, end : float
+            Where the transition is to begin and to end [rad].
+
+        Returns
+        -------
+        bool
+            False when what it follows turns back before; when that is already beyond its reach,
+            nothing is known of it.
+
+        """
+        low, high = self.reach
+        return not low <= phi <= high or low <= min(start, end) and max(start, end) <= high
 
 
 class Plan(NamedTuple):
@@ -101,7 +139,7 @@ class Plan(NamedTuple):
 
     The ``blend`` itself and the ``goal`` it leads to, its ``peaks`` at the ``speed`` of the shaft
     [rad/s], or for one that stands at the speed it may have, and the ``highest_speed`` [rad/s]
-    at which it keeps all limits.
+    at which it keeps all limits; the ``turn`` of the cam, see `Timing`.
     """
 
     blend: Blend
@@ -109,6 +147,7 @@ class Plan(NamedTuple):
     peaks: Peaks
     speed: float
     highest_speed: float
+    turn: float = TURN
 
     def text(self, unit: str) -> str:
         """
@@ -125,88 +164,18 @@ class Plan(NamedTuple):
             Angles, peaks and speeds in words.
 
         """
-        start, span = self.blend.start / DEGREE, self.blend.span / DEGREE
+        degree, rpm = self.turn / 360.0, self.turn / 60.0
+        start, span = self.blend.start / degree, self.blend.span / degree
         text = (f'over {abs(span):.4g} deg from {start % 360.0:.4g} deg, up to '
                 f'{self.peaks.velocity:.4g} {rate_text(unit, 1)} and '
                 f'{self.peaks.acceleration:.4g} {rate_text(unit, 2)} '
-                f'at {self.speed / RPM:.4g} cycles/min')
+                f'at {self.speed / rpm:.4g} cycles/min')
         if math.isfinite(self.highest_speed):
-            text += f', within limits up to {self.highest_speed / RPM:.4g} cycles/min'
+            text += f', within limits up to {self.highest_speed / rpm:.4g} cycles/min'
         return text
 
 
-class Pace(NamedTuple):
-    """
-    The speeds of the shaft that a plan reckons with.
-
-    The plan must keep its limits at the ``needed`` speed and is lengthened for the sake of the
-    ``wanted`` one [rad/s], both with the shaft's ``ramp`` on top; ``sense`` is -1 for a shaft
-    that turns backwards.
-    """
-
-    needed: float
-    wanted: float
-    ramp: RampLimits
-    sense: float
-
-
-def pace_of(state: ShaftState, bound: SpeedBound | None, ramp: RampLimits,
-            obeyed: bool = True) -> Pace:
-    """
-    Choose the speeds that a transition begun now must reckon with.
-
-    Parameters
-    ----------
-    state : ShaftState
-        The shaft now.
-    bound : SpeedBound | None
-        Up to which the axis lets the shaft run.
-    ramp : RampLimits
-        Acceleration and jerk of the shaft to leave room for.
-    obeyed : bool
-        Whether the shaft can be asked to run no faster.
-
-    Returns
-    -------
-    Pace
-        The speed that it has or, while it accelerates, cannot but come to: a shaft that obeys
-        runs no faster when asked. One that accelerates may be on its way to whatever the axis
-        allows, and one that does not obey comes to it.
-
-    """
-    speed, sense = abs(state.omega), -1.0 if state.omega < 0.0 else 1.0
-    fastest = speed if bound is None else max(speed, bound.omega)
-    if not obeyed:
-        return Pace(fastest, fastest, ramp, sense)
-    if sense * state.alpha > 0.0:
-        return Pace(min(speed_ahead(state, ramp), fastest), fastest, ramp, sense)
-    return Pace(speed, speed or fastest, ramp, sense)
-
-
-def speed_ahead(state: ShaftState, ramp: RampLimits) -> float:
-    """
-    Tell which speed the shaft cannot but come to before it obeys.
-
-    Parameters
-    ----------
-    state : ShaftState
-        The shaft now.
-    ramp : RampLimits
-        The jerk by which it takes its acceleration back.
-
-    Returns
-    -------
-    float
-        A magnitude [rad/s]: what it has or, while it accelerates, somewhat more.
-
-    """
-    speed, rise = abs(state.omega), math.copysign(1.0, state.omega) * state.alpha
-    if rise <= 0.0:
-        return speed
-    return speed + rise * (_OBEYS_WITHIN + 0.5 * rise / ramp.jerk)
-
-
-def check_speed(bound: SpeedBound | None, speed: float) -> None:
+def check_speed(bound: SpeedBound | None, speed: float, turn: float = TURN) -> None:
     """
     Check that a new motion keeps its limits at the speed of the shaft.
 
@@ -216,6 +185,8 @@ def check_speed(bound: SpeedBound | None, speed: float) -> None:
         The highest speed at which it does.
     speed : float
         Speed of the shaft, a magnitude [rad/s].
+    turn : float
+        One turn of the cam in what the axis follows.
 
     Raises
     ------
@@ -225,12 +196,13 @@ def check_speed(bound: SpeedBound | None, speed: float) -> None:
     """
     if bound is not None and bound.omega * (1.0 + 1e-9) < speed:
         raise TransitionError(
-            f'the new motion keeps the limits up to {bound.omega / RPM:.4g} cycles/min only '
-            f'({bound.segment}: {bound.quantity}) and the shaft runs at {speed / RPM:.4g}: '
+            f'the new motion keeps the limits up to {bound.omega / turn * 60.0:.4g} cycles/min '
+            f'only ({bound.segment}: {bound.quantity}) and the shaft runs at '
+            f'{speed / turn * 60.0:.4g}: '
             'slow down first')
 
 
-def next_angle(phi: float, angle: float, sense: float) -> float:
+def next_angle(phi: float, angle: float, sense: float, every: float = TURN) -> float:
     """
     Find when the shaft passes an angle next.
 
@@ -239,9 +211,11 @@ def next_angle(phi: float, angle: float, sense: float) -> float:
     phi : float
         Where it is [rad].
     angle : float
-        The angle within a turn [rad].
+        The angle [rad].
     sense : float
         -1 when it turns backwards.
+    every : float
+        After which the angle comes again [rad].
 
     Returns
     -------
@@ -249,8 +223,8 @@ def next_angle(phi: float, angle: float, sense: float) -> float:
         Unwrapped shaft angle at or beyond phi [rad].
 
     """
-    turns = sense * (phi - angle) / TURN
-    return angle + sense * math.ceil(turns - _AT_ANGLE) * TURN
+    turns = sense * (phi - angle) / every
+    return angle + sense * math.ceil(turns - _AT_ANGLE) * every
 
 
 def plan_transition(old: Motion, target: Target, state: ShaftState, timing: Timing, pace: Pace,
@@ -262,8 +236,8 @@ def plan_transition(old: Motion, target: Target, state: ShaftState, timing: Timi
     ----------
     old : Motion
         What the axis does now.
-    target : Callable[[float, float], Goal]
-        Makes the goal from the angles at which the transition begins and ends [rad].
+    target : Callable[[Motion, float, float], Way]
+        Makes the way to the goal, over the angles at which it may go.
     state : ShaftState
         The shaft now.
     timing : Timing
@@ -290,15 +264,15 @@ def plan_transition(old: Motion, target: Target, state: ShaftState, timing: Timi
     best: Plan | None = None
     last: Plan | None = None
     kept = True
-    for start, span in _windows(state.phi, timing, pace.sense, ends_at):
-        goal = target(start, start + span)
-        blend = Blend(old, goal.motion, start, span)
+    for start, span in _ending_windows(state.phi, timing, pace.sense, ends_at):
+        goal, blend = target(old, start, span)
         demand = Demand(blend, min(start, blend.end), max(start, blend.end))
         allowed = demand.highest_speed(limits, pace.ramp)
         # a shaft that stands will run some time: what counts is how fast it may
         speed = pace.needed or min(pace.wanted, allowed)
-        last = Plan(blend, goal, demand.peaks(speed, pace.ramp), speed, allowed)
-        kept = demand.keeps_range(limits)
+        last = Plan(
+            blend, goal, demand.peaks(speed, pace.ramp), speed, allowed, timing.turn)
+        kept = demand.keeps_range(_reached(old, start, span, limits))
         if not kept:
             continue
         if allowed >= pace.wanted:
@@ -307,8 +281,21 @@ def plan_transition(old: Motion, target: Target, state: ShaftState, timing: Timi
             best = last
     if best is not None and best.highest_speed >= pace.needed:
         return best
-    raise TransitionError(_why(best or last, kept or best is not None, pace, limits),
+    raise TransitionError(_why(best or last, kept or best is not None, pace, limits, timing),
                           0.0 if best is None else best.highest_speed)
+
+
+def _ending_windows(phi: float, timing: Timing, sense: float, ends_at: bool,
+                    ) -> Iterator[tuple[float, float]]:
+    """Give what `_windows` does as far as it comes to its end, else when the axis comes back."""
+    found = False
+    for way in (sense, -sense):
+        for start, span in _windows(phi, timing, way, ends_at):
+            if timing.can_end(phi, start, start + span):
+                found = True
+                yield start, span
+        if found:
+            return
 
 
 def _windows(phi: float, timing: Timing, sense: float, ends_at: bool,
@@ -317,25 +304,39 @@ def _windows(phi: float, timing: Timing, sense: float, ends_at: bool,
     span = timing.span
     if timing.at is At.SOONEST:
         for k in range(_LOOKS):
-            yield phi + sense * k * TURN / _LOOKS, sense * span
+            yield phi + sense * k * timing.turn / _LOOKS, sense * span
     longest = max(span, timing.longest)
     while True:
         start = phi
         if timing.at is At.ANGLE:
-            start = next_angle(phi, timing.angle, sense)
+            start = next_angle(phi, timing.angle, sense, timing.every)
         elif timing.at is At.CYCLE_END:
             lead = span if ends_at else 0.0
-            start = next_angle(phi + sense * lead, 0.0, sense) - sense * lead
+            start = next_angle(
+                phi + sense * lead, timing.angle, sense, timing.every) - sense * lead
         yield start, sense * span
         if span >= longest:
             return
         span = min(_GROWTH * span, longest)
 
 
-def _why(plan: Plan | None, kept: bool, pace: Pace, limits: Limits) -> str:
+def _reached(old: Motion, start: float, span: float, limits: Limits) -> Limits:
+    """Widen limits of position by what an axis that has left them does anyway."""
+    low, high = limits.positions
+    if low <= old.sample(start)[0] <= high:
+        return limits
+    y = old(np.linspace(start, start + span, _PLACES))[0]
+    return replace(limits, lowest=min(low, float(y.min())), highest=max(high, float(y.max())))
+
+
+def _why(plan: Plan | None, kept: bool, pace: Pace, limits: Limits, timing: Timing) -> str:
     if plan is None:
-        return 'no span to try: give one above 0'
-    peaks, span = plan.peaks, abs(plan.blend.span) / DEGREE
+        low, high = timing.reach
+        return (f'what the axis follows stays between {low:.6g} and {high:.6g} and turns back '
+                f'before a transition over {timing.span:.4g} would end: begin it elsewhere, '
+                'or take a shorter span')
+    degree, rpm = timing.turn / 360.0, timing.turn / 60.0
+    peaks, span = plan.peaks, abs(plan.blend.span) / degree
     if not kept:
         return (f'the transition would move the axis from {peaks.lowest:.6g} to '
                 f'{peaks.highest:.6g}, beyond its limits of position '
@@ -345,6 +346,6 @@ def _why(plan: Plan | None, kept: bool, pace: Pace, limits: Limits) -> str:
             ('velocity', peaks.velocity, limits.velocity),
             ('acceleration', peaks.acceleration, limits.acceleration),
             ('jerk', peaks.jerk, limits.jerk)) if limit is not None and value > 0.99 * limit]
-    return (f'no transition fits: over {span:.4g} deg at {pace.needed / RPM:.4g} cycles/min it '
+    return (f'no transition fits: over {span:.4g} deg at {pace.needed / rpm:.4g} cycles/min it '
             f'would take {", ".join(asked) or "more than the limits"}; it fits up to '
-            f'{plan.highest_speed / RPM:.4g} cycles/min: slow down, or allow a longer span')
+            f'{plan.highest_speed / rpm:.4g} cycles/min: slow down, or allow a longer span')

@@ -14,8 +14,7 @@ import math
 
 from cam_motion.motion.limits import Limits
 from cam_motion.motion.piece import Array
-from cam_motion.runtime.demand import Demand
-from cam_motion.runtime.motion_over_angle import Motion
+from cam_motion.runtime.demand import Demands
 from cam_motion.runtime.ramp import ramp_time, RampLimits
 import numpy as np
 
@@ -36,16 +35,15 @@ class RampRoom:
 
     Parameters
     ----------
-    axes : Iterable[tuple[Motion, float, Limits]]
-        The motion of each axis, the shaft angle after which it repeats [rad], and its limits.
+    axes : Iterable[tuple[Demands, Limits]]
+        What the motion of each axis demands, and its limits.
 
     """
 
-    def __init__(self, axes: Iterable[tuple[Motion, float, Limits]]) -> None:
-        """Look at each axis over a period."""
+    def __init__(self, axes: Iterable[tuple[Demands, Limits]]) -> None:
+        """Look at each axis."""
         self._axes = [
-            (_extreme(Demand(motion, 0.0, period).values[1:]), limits)
-            for motion, period, limits in axes
+            (_extreme(demands.values[1:]), limits) for demands, limits in axes
             if limits.acceleration is not None or limits.jerk is not None]
 
     def __bool__(self) -> bool:

@@ -18,8 +18,8 @@ from cam_motion.runtime.follower_settings import FollowerState
 from cam_motion.runtime.layout import Layout
 from cam_motion.runtime.planning import Target, Timing
 
-Anchor = Callable[[float, float], Layout]
-"""Anchors a layout for an axis that joins it from a position at a shaft angle [rad]."""
+Anchor = Callable[[float, float, float], Layout]
+"""Anchors a layout for an axis that joins it from a position, at a shaft angle, in a sense."""
 
 
 class Recipe(NamedTuple):

@@ -88,7 +88,9 @@ def test_a_dry_run_and_refusals_change_nothing_and_the_change_itself_is_told(
     assert done.returncode == 0 and 'all axes would change' in done.stdout, done.stderr
     assert '0.3' in done.stdout and 'interlock cut_held: kept on the way' in done.stdout
     refusals = {
-        'interlock belt_stands would be broken on the way': ('--at-deg', '45', SHORT),
+        # the same stroke elsewhere: the belt has to go there
+        'interlock belt_stands would be broken on the way': (
+            '--at-deg', '150', altered(feeder__feed__lift=0.3, feeder__offset=0.05)),
         'knife.dead_time': (altered(knife__dead_time=0.1),),
         'has an axis knife too': (altered(
             line__axes=['feeder', 'press'], line__interlocks=['belt_stands'],

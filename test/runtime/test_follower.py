@@ -22,6 +22,7 @@ from cam_motion.runtime.planning import At, Timing, TransitionError
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft, ShaftError
 from cam_motion.runtime.shaft_motion import ShaftState
+from cam_motion.runtime.speed_blend import SpeedBlend
 from cam_motion.runtime.transition import Blend
 from cam_motion.units import DEGREE, RPM, TURN
 from hypothesis import given, settings
@@ -84,8 +85,16 @@ class TestMotions:
         belt = CoupledCam(BELT, ratio=2.0, scale=-1.0)
         blend = Blend(coupled, belt, 2.0, 1.3)
         back = Blend(blend, Standstill(0.3), 2.5, -1.7)
-        for motion in (coupled, belt, Superposition((coupled, belt)), blend, back):
+        ways = [SpeedBlend(old, new, 2.0, span) for span in (1.3, -1.7) for old, new in (
+            (coupled, belt), (belt, Standstill(0.1)), (blend, CoupledCam(BELT, phase=3.0)))]
+        shut = [replace(way, new=Superposition((way.new, Standstill(way.gap)))) for way in ways]
+        for motion in (coupled, belt, Superposition((coupled, belt)), blend, back, *shut):
             derivatives_fit(motion, -3.0, 9.0)
+        for way in shut:  # joined to the second derivative at both ends
+            assert abs(way.gap) < 1e-13
+            for end in (way.start, way.end):
+                near = way.sample(end + 1e-9), way.sample(end - 1e-9)
+                assert near[0][:2] == pytest.approx(near[1][:2], abs=1e-8)
 
     def test_blend_is_smooth_at_its_ends(self):
         """Before the start it is the old motion, behind the end the new one, joined to y''."""

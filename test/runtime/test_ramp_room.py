@@ -29,7 +29,8 @@ CAM = CoupledCam(CamProfile([
     segment('up', end_deg=120.0, lift=0.2, law='cycloidal'),
     segment('down', end_deg=300.0, lift=-0.2, law='cycloidal'),
     segment('rest', end_deg=360.0)]))
-PEAKS = Demand(CAM, 0.0, TURN).peaks(1.0, RampLimits(0.0, 0.0))
+TURNING = Demand(CAM, 0.0, TURN)
+PEAKS = TURNING.peaks(1.0, RampLimits(0.0, 0.0))
 
 
 def worst(shaft, begin, end, slowest=0.0):
@@ -56,7 +57,7 @@ def test_no_axis_breaks_its_limits_on_any_ramp(omega, room, with_jerk, changes):
     limits = Limits(acceleration=PEAKS.acceleration * omega ** 2 * (1.0 + room),
                     jerk=PEAKS.jerk * omega ** 3 * (1.0 + room) if with_jerk else None)
     shaft = Shaft(omega, RAMP, RAMP)
-    shaft.room = RampRoom([(CAM, TURN, limits)])
+    shaft.room = RampRoom([(TURNING, limits)])
     shaft.allow(0.0, omega)
     t = 0.0
     shaft.run(t)
@@ -84,7 +85,7 @@ def test_a_shaft_too_fast_for_its_axes_is_not_slowed_down_forever():
     shaft.run(0.0)
     t = shaft.settled_at + 1.0
     bound = 10.0
-    shaft.room = RampRoom([(CAM, TURN, Limits(acceleration=PEAKS.acceleration * bound ** 2))])
+    shaft.room = RampRoom([(TURNING, Limits(acceleration=PEAKS.acceleration * bound ** 2))])
     shaft.allow(t, bound)
     assert shaft.settled_at - t < 3.0
     assert shaft.state(shaft.settled_at).omega == shaft.target < bound
@@ -92,9 +93,9 @@ def test_a_shaft_too_fast_for_its_axes_is_not_slowed_down_forever():
 
 def test_without_need_nothing_is_softened():
     """Limits with room leave the ramp as it was asked for; tight ones make it gentler."""
-    wide = RampRoom([(CAM, TURN, Limits(acceleration=1e4))])
+    wide = RampRoom([(TURNING, Limits(acceleration=1e4))])
     assert wide.soften(20.0, RAMP) == RAMP
-    tight = RampRoom([(CAM, TURN, Limits(acceleration=PEAKS.acceleration * 400.0 * 1.0005))])
+    tight = RampRoom([(TURNING, Limits(acceleration=PEAKS.acceleration * 400.0 * 1.0005))])
     softer = tight.soften(20.0, RAMP)
     assert softer.jerk < RAMP.jerk
     assert softer.acceleration <= RAMP.acceleration
@@ -104,7 +105,7 @@ def test_without_need_nothing_is_softened():
 def test_a_shaft_at_the_very_limit_of_its_axes_starts_and_stops_in_reasonable_time(omega, longest):
     """A slow machine too: what the limits of its axes leave is used up, not a share of it."""
     shaft = Shaft(2.0 * omega, RAMP, RAMP)
-    shaft.room = RampRoom([(CAM, TURN, Limits(
+    shaft.room = RampRoom([(TURNING, Limits(
         acceleration=PEAKS.acceleration * omega ** 2, jerk=PEAKS.jerk * omega ** 3))])
     shaft.allow(0.0, omega)
     shaft.run(0.0)
@@ -119,7 +120,7 @@ def test_with_no_room_left_at_its_speed_a_shaft_still_stops_in_reasonable_time()
     shaft = Shaft(10.0, RAMP, RAMP)
     shaft.run(0.0)
     t = shaft.settled_at + 1.0
-    shaft.make_room(t, RampRoom([(CAM, TURN, Limits(
+    shaft.make_room(t, RampRoom([(TURNING, Limits(
         acceleration=PEAKS.acceleration * 100.0 * (1.0 + 1e-7)))]))
     shaft.stop(t)
     assert shaft.settled_at - t < 5.0
@@ -129,7 +130,7 @@ def test_other_room_softens_the_ramp_under_way_and_leaves_a_steady_shaft_alone()
     shaft = Shaft(20.0, RAMP, RAMP)
     shaft.run(0.0)
     quick = shaft.settled_at
-    tight = RampRoom([(CAM, TURN, Limits(acceleration=PEAKS.acceleration * 400.0 * 1.0005))])
+    tight = RampRoom([(TURNING, Limits(acceleration=PEAKS.acceleration * 400.0 * 1.0005))])
     shaft.make_room(0.3 * quick, tight)
     assert shaft.settled_at > 1.1 * quick
     steady = shaft.settled_at
@@ -152,7 +153,7 @@ def test_no_command_on_a_softened_ramp_breaks_a_limit_or_takes_for_ever(
     limits = Limits(acceleration=PEAKS.acceleration * omega ** 2 * (1.0 + room),
                     jerk=PEAKS.jerk * omega ** 3 * (1.0 + room) if with_jerk else None)
     shaft = Shaft(omega, RAMP, RAMP)
-    shaft.room = RampRoom([(CAM, TURN, limits)])
+    shaft.room = RampRoom([(TURNING, limits)])
     shaft.allow(0.0, omega)
     shaft.run(0.0)
     plain, t = shaft.settled_at, 0.0
