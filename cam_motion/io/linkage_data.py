@@ -16,7 +16,7 @@ from cam_motion.io.linkage_config import rate_name
 from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.io.plain import finite
 from cam_motion.mechanism.linkage_motion import holding_efforts, LinkageMotion
-from cam_motion.mechanism.pose import bound_text, Pose
+from cam_motion.mechanism.pose import bound_text, others_text, Pose
 from cam_motion.units import DEGREE
 
 
@@ -155,7 +155,7 @@ def range_text(settings: LinkageSettings, name: str, pose: Pose | None = None) -
     name : str
         The input.
     pose : Pose, optional
-        The position to begin at; None takes the start.
+        The position to begin at; None takes the start, and says where the others are there.
 
     Returns
     -------
@@ -167,7 +167,10 @@ def range_text(settings: LinkageSettings, name: str, pose: Pose | None = None) -
     ends = [(f'{side} {bound_text(settings.linkage, name, value)}', what.text)
             for side, value, what in (('above', found.low, found.at_low),
                                       ('below', found.high, found.at_high)) if what]
+    others = others_text(settings.assembly.start, name) if pose is None else ''
+    given = f' (with {others})' if others else ''
     if not ends:
-        return f'{name}: turns through, nothing stops it'
+        return f'{name}: turns through, nothing stops it{given}'
     reasons = dict.fromkeys(reason for _, reason in ends)
-    return f'{name}: ' + ' and '.join(end for end, _ in ends) + ', where ' + ' and '.join(reasons)
+    return (f'{name}: ' + ' and '.join(end for end, _ in ends) + ', where '
+            + ' and '.join(reasons) + given)

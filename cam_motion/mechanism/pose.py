@@ -191,12 +191,32 @@ def range_problem(pose: Pose, name: str, value: float, found: Range) -> Problem 
         return None
     linkage = pose.linkage
     low, high = (bound_text(linkage, name, x) for x in (found.low, found.high))
-    others = ', '.join(f'{other} = {bound_text(linkage, other, pose[other])}'
-                       for other in linkage.inputs if other != name)
+    others = others_text(pose, name)
     given = f'with {others} ' if others else ''
     return Problem(
         name, value, f'{given}the linkage can be assembled from {low} to {high}, both ends '
         f'excluded; there {beyond.text}', 'stay within this range')
+
+
+def others_text(pose: Pose, name: str) -> str:
+    """
+    Write where the other inputs are, for people.
+
+    Parameters
+    ----------
+    pose : Pose
+        The position.
+    name : str
+        The input that is left out.
+
+    Returns
+    -------
+    str
+        All other inputs with their values; empty where there are none.
+
+    """
+    return ', '.join(f'{other} = {bound_text(pose.linkage, other, pose[other])}'
+                     for other in pose.linkage.inputs if other != name)
 
 
 def together_problem(inputs: Mapping[str, float], stopped: str) -> Problem:

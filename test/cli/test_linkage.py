@@ -154,6 +154,8 @@ def test_ranges_are_those_at_the_position_asked_for(cam_motion, read_json, tmp_p
     assert 'a: turns through, nothing stops it' in said
     data = read_json(cam_motion(
         'linkage', file, '--at', 'a_deg=170,b_deg=100', '--json', '--all').stdout)
+    said = cam_motion('check', file).stdout  # which speaks of the start
+    assert 'five, a: above -90.5352 deg' in said and '(with b = 60 deg)' in said
     low, at, high = (math.degrees(each) for each in (
         data['ranges']['b']['low'], data['inputs']['b'], data['ranges']['b']['high']))
     assert low < at < high and data['ranges']['a']['low'] is None
