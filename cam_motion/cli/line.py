@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+import sys
 
 from cam_motion.cli.child import require_ros, stop_signals
 from cam_motion.cli.live import Display
@@ -87,6 +88,9 @@ def run(arguments: argparse.Namespace) -> int:
             code = session.end()
     if arguments.json:
         print_json(session.summary(code))
-    elif arguments.record is not None:
+        return code
+    if arguments.record is not None:
         print(f'recorded into {arguments.record}')
+    for name, text in session.overloads.items():
+        print(f'warning: {name}: {text}', file=sys.stderr)
     return code

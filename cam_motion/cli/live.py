@@ -13,6 +13,7 @@ from collections.abc import Callable
 from time import monotonic
 from types import TracebackType
 
+from cam_motion.cli.overload import overloads
 from cam_motion.cli.terminal import console, number, row, table
 from cam_motion.cli.watch import Snapshot
 from cam_motion.io.machine import Machine
@@ -26,6 +27,7 @@ REFRESH = 0.2
 
 _ORDINARY = 'in_sync'  # a state not worth a word on a plain line
 _FOLLOWS = 'following'  # of a linkage likewise
+_WORKS = (_FOLLOWS, 'running')  # of a drive
 _LINE_EVERY = 1.0  # plain lines come slower [s]
 
 
@@ -140,8 +142,9 @@ def render(machine: Machine, seen: Snapshot, title: str, note: str = '') -> Grou
         unit = machine.diagram.axes[name].unit
         row(made, name, *_pair(motion, unit, rate_text(unit, 1), 4), seen.states.get(name, ''))
     for name, effort in seen.drives.items():
-        row(made, name, *_pair(effort, 'N m', 'rpm', 1), '')
-    held = []
+        row(made, name, *_pair(effort, 'N m', 'rpm', 1), seen.states.get(name, ''))
+    held = [Text(f'{name}: {text}', style='bold red')
+            for name, text in overloads(machine, seen).items()]
     for name in machine.linkages:
         state, _, reason = seen.states.get(name, 'waiting').partition(':')
         row(made, name, '', '', '', '', state)
@@ -180,7 +183,8 @@ def plain_line(machine: Machine, seen: Snapshot) -> str:
     Returns
     -------
     str
-        Time, shaft, axes, drives, linkages that do not follow, ticks missed.
+        Time, shaft, axes, drives and what they cannot do, linkages that do not follow, ticks
+        missed.
 
     """
     parts = [
@@ -192,8 +196,12 @@ def plain_line(machine: Machine, seen: Snapshot) -> str:
         state = seen.states.get(name, _ORDINARY)
         parts.append(' '.join((name, *_pair(motion, unit, rate_text(unit, 1), 4),
                                *([state] if state != _ORDINARY else []))))
-    parts += [' '.join((name, *_pair(effort, 'N m', 'rpm', 1)))
-              for name, effort in seen.drives.items()]
+    beyond = overloads(machine, seen)
+    for name, effort in seen.drives.items():
+        state = seen.states.get(name, _FOLLOWS)
+        parts.append(' '.join((name, *_pair(effort, 'N m', 'rpm', 1),
+                               *([state] if state not in _WORKS else []),
+                               *([f'({beyond[name]})'] if name in beyond else []))))
     parts += [f'{name} {state}' for name in machine.linkages
               if (state := seen.states.get(name, 'waiting')) != _FOLLOWS]
     return '  '.join((*parts, _health_text(seen)))

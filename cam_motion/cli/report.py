@@ -35,8 +35,9 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     """
     parser.description = (
         'Compare every recorded setpoint with the exact curve at the recorded shaft '
-        'angle. Exit code 0 if each shaft tick has its setpoint and each setpoint is '
-        "within 1e-9 of its axis' own peak, else 1.")
+        'angle. Exit code 0 if each shaft tick has its setpoint, each setpoint is '
+        "within 1e-9 of its axis' own peak, and no motor was at or beyond its peak torque, "
+        'else 1.')
     parser.add_argument('bag', metavar='BAG', type=Path, help='bag directory, .mcap or .db3 file')
     parser.add_argument('--config', metavar='CONFIG', type=Path,
                         help='machine file (default: the one that the bag carries)')

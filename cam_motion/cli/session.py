@@ -17,6 +17,7 @@ from typing import Any
 
 from cam_motion.cli.child import Child, node, recorder, START_WITHIN, STOP_WITHIN
 from cam_motion.cli.live import Display, REFRESH
+from cam_motion.cli.overload import overloads
 from cam_motion.cli.watch import LineWatch, Snapshot
 from cam_motion.errors import CamMotionError
 from cam_motion.io.machine import Machine
@@ -168,6 +169,11 @@ class Session:
             sleep(0.05)
         return child.end(max(0.0, deadline - monotonic()))
 
+    @property
+    def overloads(self) -> dict[str, str]:
+        """Say which drives have come to a limit, and to which, by name."""
+        return overloads(self._machine, self._seen)
+
     def summary(self, code: int) -> dict[str, Any]:
         """Give what the run came to, as plain data."""
         seen = self._seen
@@ -185,6 +191,7 @@ class Session:
             'ticks': counted('ticks'),
             'missed_ticks': counted('missed_ticks'),
             'late_ticks': counted('late_ticks'),
+            'overloads': self.overloads,
         }
 
 

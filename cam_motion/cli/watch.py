@@ -41,11 +41,13 @@ class Snapshot:
     axes : Mapping[str, tuple[float, float] | None]
         Position and velocity by axis [unit, unit/s].
     states : Mapping[str, str]
-        State by axis and linkage; of those only that have told theirs.
+        State by axis, drive and linkage; of those only that have told theirs.
     drives : Mapping[str, tuple[float, float] | None]
         Motor torque [N m] and motor speed [rpm] by drive.
     health : Mapping[str, str]
         Last diagnostic figures of the master shaft, as text by key.
+    drive_health : Mapping[str, Mapping[str, str]]
+        The same of each drive that has told them.
 
     """
 
@@ -56,6 +58,7 @@ class Snapshot:
     states: Mapping[str, str] = field(default_factory=dict)
     drives: Mapping[str, tuple[float, float] | None] = field(default_factory=dict)
     health: Mapping[str, str] = field(default_factory=dict)
+    drive_health: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def cycles(self) -> int:
@@ -91,7 +94,8 @@ class LineWatch:
         self._master = machine.master.name
         self._subscriptions = _subscribe(self._node, machine)
         self._heard: dict[tuple[str, str], Any] = {}
-        self._health: dict[str, str] = {}
+        self._drives = machine.drive_names
+        self._health: dict[str, dict[str, str]] = {}  # by node
 
     def look(self) -> Snapshot:
         """
@@ -120,7 +124,8 @@ class LineWatch:
              if kind == 'state'},
             {name: _effort(self._heard.get((kind, name)))
              for kind, name in self._subscriptions if kind == 'drive'},
-            dict(self._health))
+            self._health.get(self._master, {}),
+            {name: self._health[name] for name in self._drives if name in self._health})
 
     @property
     def recorder_state(self) -> str:
@@ -132,8 +137,9 @@ class LineWatch:
 
     def _note_health(self, message: Any) -> None:
         for status in message.status:
-            if status.name.rsplit('/', 1)[-1] == self._master and status.values:
-                self._health = {pair.key: pair.value for pair in status.values}
+            name = status.name.rsplit('/', 1)[-1]
+            if name in (self._master, *self._drives) and status.values:
+                self._health[name] = {pair.key: pair.value for pair in status.values}
 
     def run_shaft(self) -> None:
         """
@@ -197,7 +203,7 @@ def _subscribe(node: Any, machine: Machine) -> dict[tuple[str, str], Any]:
         *(('axis', name, JointTrajectoryPoint, f'{name}/setpoint', newest)
           for name in machine.diagram.axes),
         *(('state', name, String, f'{name}/state', latched)
-          for name in (*machine.diagram.axes, *machine.linkages)),
+          for name in (*machine.diagram.axes, *machine.drive_names, *machine.linkages)),
         *(('drive', name, JointState, f'{name}/drive_state', newest)
           for name in machine.drive_names),
     ]

@@ -77,8 +77,8 @@ class CamDrive:
     back, passes the teeth too: in this form without loss. `Gearbox.motor_torque`, and by it the
     drives that follow an axis, take the share from the torque *through the teeth* instead. The
     two are the same at constant speed, and where all inertia is on the cam shaft. For the press of
-    the document, losses on the torque through the teeth mean 86.24 J per turn in place of 76.38, a
-    fluctuation of 6.08 % in place of 5.77, and 399.1 rpm in place of 401.05 at least.
+    the document, losses on the torque through the teeth mean 86.24 J per turn in place of 76.38,
+    a fluctuation of 6.08 % in place of 5.77, and 399.1 rpm in place of 401.05 at least.
 
     References
     ----------

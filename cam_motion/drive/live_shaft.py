@@ -30,8 +30,9 @@ class LiveState(NamedTuple):
     A cam shaft at an instant.
 
     Angle [rad, unwrapped], speed [rad/s] and acceleration [rad/s²] of the cam shaft; torque of
-    motor and brake on the motor shaft, what the gearbox passes on to the cam shaft, and what
-    the load behind flywheel and gearbox takes, its inertia included [N m].
+    the motor, what the gearbox passes on to the cam shaft from motor and brake, what the load
+    behind flywheel and gearbox takes, its inertia included, and the torque of the brake, which
+    sits on the motor shaft [N m].
     """
 
     phi: float
@@ -40,6 +41,7 @@ class LiveState(NamedTuple):
     motor_torque: float
     shaft_torque: float
     load_torque: float
+    brake_torque: float
 
 
 class _Moment(NamedTuple):
@@ -177,16 +179,15 @@ class LiveShaft:
         phi = at.turn * TURN + at.x
         if at.sense == 0.0:
             load = -element.force(at.x)
-            held = load / self._torque.ratio
-            if self.command is not Command.BRAKE:
-                held = self._torque.motor(self.command, 1.0, 0.0)
-            return LiveState(phi, 0.0, 0.0, held, load, load)
+            held = load / self._torque.ratio if self.command is Command.BRAKE else 0.0
+            driven = self._torque.motor(self.command, 1.0, 0.0)
+            return LiveState(phi, 0.0, 0.0, driven, load, load, held)
         law = self._torque.law(self.command, at.sense, at.fast)
         alpha = element.acceleration(at.x, at.w, at.sense, law)
         through = law(at.w)
         return LiveState(
             phi, at.w, alpha, self._torque.motor(self.command, at.sense, at.w), through,
-            through - self._fixed_inertia * alpha)
+            through - self._fixed_inertia * alpha, self._torque.brake(self.command, at.sense))
 
     def _moment(self, time_ns: int) -> _Moment:
         """Advance to the last grid point, and look ahead from there."""

@@ -89,7 +89,7 @@ class ShaftTorque:
 
     def motor(self, command: Command, sense: float, omega: float) -> float:
         """
-        Give the torque of motor and brake on the motor shaft while it turns.
+        Give the torque of the motor while it turns.
 
         Parameters
         ----------
@@ -108,6 +108,25 @@ class ShaftTorque:
         """
         if command is Command.RUN:
             return (self._forwards if sense > 0.0 else self._backwards)(omega)
+        return 0.0
+
+    def brake(self, command: Command, sense: float) -> float:
+        """
+        Give the torque of the brake on the motor shaft while it turns.
+
+        Parameters
+        ----------
+        command : Command
+            What the motor shaft has been told.
+        sense : float
+            1 forwards, -1 backwards.
+
+        Returns
+        -------
+        float
+            Torque [N m].
+
+        """
         return -sense * self.brake_torque if command is Command.BRAKE else 0.0
 
 

@@ -12,9 +12,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cam_motion.io.comparison import AxisReport, QUANTITIES, TOLERANCE, TOLERANCE_TEXT
-from cam_motion.io.report import Report
-from cam_motion.units import rate_text, TURN
+from cam_motion.io.machine import DriveSettings
+from cam_motion.io.report import DriveReport, Report
+from cam_motion.units import rate_text, RPM, TURN
 import numpy as np
+
+# A torque so close to the peak torque is at it: the speed, on which that depends, goes on
+# within a period of the control loop.
+_AT_LIMIT = 0.995
+_BEYOND = 1.0 + 1e-9
 
 
 def findings(report: Report) -> list[str]:
@@ -30,7 +36,7 @@ def findings(report: Report) -> list[str]:
     -------
     list[str]
         One sentence each; empty where every shaft tick has its setpoint, each within
-        `TOLERANCE` of the exact curve.
+        `TOLERANCE` of the exact curve, and no motor has come to its peak torque.
 
     """
     found = []
@@ -45,7 +51,34 @@ def findings(report: Report) -> list[str]:
     found += [f'{name}: its loops fail to close by {linkage.gap:.3g} m, and open at '
               f'{linkage.slip:.3g} m/s' for name, linkage in report.linkages.items()
               if not linkage.sound]
+    for name, settings in report.recording.machine.drives.items():
+        if name in report.drives and report.drives[name].states:
+            unit = report.recording.machine.diagram.axes[settings.axis].unit
+            found += [f'{name}: {text}'
+                      for text in _drive_findings(settings, report.drives[name], unit)]
     return found
+
+
+def _drive_findings(settings: DriveSettings, drive: DriveReport, unit: str) -> Iterator[str]:
+    motor = settings.motor
+    if motor is None:
+        return
+    peak = np.asarray(motor.peak_torque(drive.motor_speed))
+    torque = np.abs(drive.motor_torque)
+    if settings.servo is None:
+        if np.any(beyond := torque > peak * _BEYOND):
+            worst = int(np.argmax(np.where(beyond, torque - peak, -np.inf)))
+            yield (f'{_some(int(beyond.sum()), "state")} beyond the motor: at '
+                   f'{drive.motor_speed[worst] / RPM:.5g} rpm it would take '
+                   f'{torque[worst]:.5g} N m, and the motor gives '
+                   f'{peak[worst]:.5g} N m')
+        return
+    at_limit = (torque >= peak * _AT_LIMIT) & (torque > 0.0)
+    if np.any(at_limit):
+        error = ('' if drive.following_error is None else
+                 f'; its axis was up to {drive.following_error:.5g} {unit} off its set position')
+        yield (f'its motor was at its peak torque in {_some(int(at_limit.sum()), "state")}, with '
+               f'{drive.peak_torque:.5g} N m{error}')
 
 
 def _axis_findings(axis: AxisReport) -> Iterator[str]:
@@ -116,6 +149,17 @@ def notes(report: Report) -> list[str]:
         *(name for name in recording.machine.linkages
           if name not in report.linkages or not report.linkages[name].states)]
     found += [f'{name}: the bag has no states of it' for name in missing]
+    for name, drive in report.drives.items():
+        motor = None if name not in recording.machine.drives else (
+            recording.machine.drives[name].motor)
+        if motor is None or not drive.states:
+            continue
+        mean = float(np.mean(np.abs(drive.motor_speed)))
+        allowed = float(motor.continuous_torque(mean))
+        if drive.rms_torque > allowed * _BEYOND:
+            found.append(f'{name}: an RMS torque of {drive.rms_torque:.5g} N m overheats the '
+                         f'motor, which gives {allowed:.5g} N m for good at its mean speed of '
+                         f'{mean / RPM:.5g} rpm')
     return found
 
 

@@ -76,7 +76,8 @@ INTERFACE = (
              'line_shaft'),
     Endpoint('drive_sim', 'publishes', '~/drive_state', _JOINTS,
              'joints motor and load, with mode line_shaft also shaft: position, velocity, effort '
-             '(rad, rad/s, N m)'),
+             '(rad, rad/s, N m); the effort of motor is that of the motor alone, without its '
+             'brake'),
     Endpoint('drive_sim: servo', 'publishes', '~/actual', _POINT,
              'one per setpoint: what the axis really does, [y], [ẏ], [ÿ]; time_from_start is '
              'copied'),

@@ -164,7 +164,7 @@ class LineShaftMode(DriveMode):
         values = self._ticker.health(last.phi, last.omega) | {
             'nominal_speed_cpm': self._nominal / RPM,
             'dropped_s': self._ticker.given_up / self._ticker.schedule.rate,
-            'motor_torque': last.motor_torque,
+            'motor_torque': last.motor_torque, 'brake_torque': last.brake_torque,
             'motor_speed_rpm': self._ratio * last.omega / RPM,
             'peak_motor_torque': self._peak_torque, 'stops_under_power': self._live.stops,
         }

@@ -7,11 +7,13 @@
 # language governing permissions and limitations under the License.
 """The display of a running line, and children that do not behave."""
 
+from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 
 from cam_motion.cli.child import Child, stop_signals
 from cam_motion.cli.live import Display, plain_line, render
+from cam_motion.cli.overload import overloads
 from cam_motion.cli.session import _recorded_topics
 from cam_motion.cli.watch import Snapshot
 from cam_motion.io.bag import BagWriter
@@ -36,6 +38,42 @@ def test_a_plain_line_says_everything():
                  'feeder 9.9000 m 3.2500 m/s', 'press 0.0200 m 0.0000 m/s', 'knife - m - m/s',
                  'feeder_drive -1466.6 N m 1282.0 rpm', 'ticks missed 3, late 17'):
         assert part in line
+
+
+SERVO = load_machine(CONFIGS / 'feeding_group_servo.yaml')
+OVERLOADED = Snapshot(
+    time=3.0, drives={'feeder_drive': (47.6, 1500.0)}, states={'feeder_drive': 'silent'},
+    drive_health={'feeder_drive': {
+        'saturations': '2', 'saturated_s': '0.35', 'peak_following_error': '0.104',
+        'thermal_load_pct': '132.4', 'dropped_s': '0'}})
+
+
+def test_a_drive_that_comes_to_its_limits_says_so():
+    said = 'saturated for 0.35 s, up to 0.104 m off its set motion, motor too warm: 132.4 %'
+    assert overloads(SERVO, OVERLOADED)['feeder_drive'].startswith(said)
+    line = plain_line(SERVO, OVERLOADED)
+    assert f'feeder_drive 47.6 N m 1500.0 rpm silent ({said}' in line
+    console = Console(width=120, file=StringIO())
+    console.print(render(SERVO, OVERLOADED, 'servo.yaml'))
+    assert f'feeder_drive: {said}' in console.file.getvalue()
+
+
+def test_a_drive_within_its_limits_says_nothing():
+    well = {'saturations': '0', 'saturated_s': '0', 'peak_following_error': '2e-06',
+            'thermal_load_pct': '89', 'dropped_s': '0', 'stops_under_power': '0'}
+    seen = replace(OVERLOADED, states={'feeder_drive': 'following'},
+                   drive_health={'feeder_drive': well})
+    assert overloads(SERVO, seen) == {}
+    assert plain_line(SERVO, seen).count('(') == 0
+    assert 'following' not in plain_line(SERVO, seen)
+
+
+def test_a_motor_that_does_not_get_its_load_round_is_named():
+    press = load_machine(CONFIGS / 'cam_press_drive.yaml')
+    seen = Snapshot(time=1.0, drives={'press_drive': (3.0, 0.0)},
+                    states={'press_drive': 'stalled'},
+                    drive_health={'press_drive': {'stops_under_power': '3'}})
+    assert 'press_drive 3.0 N m 0.0 rpm stalled (stops under power: 3)' in plain_line(press, seen)
 
 
 def test_a_linkage_is_shown_with_its_state_and_on_a_plain_line_unless_it_follows():

@@ -206,12 +206,17 @@ def test_the_brake_stops_the_shaft_and_holds_it(press):
     live = running(press())
     live.state(2 * SECOND)
     live.tell(2 * SECOND, Command.BRAKE)
-    assert live.state(2 * SECOND).motor_torque == -BRAKE
+    braking = live.state(2 * SECOND)
+    assert (braking.motor_torque, braking.brake_torque) == (0.0, -BRAKE)
+    ratio, efficiency = 1421.0 / 400.0, 0.9
+    assert braking.shaft_torque == pytest.approx(-BRAKE * ratio / efficiency, rel=ROUNDING)
     rest = live.state(3 * SECOND)
     assert live.standing
     assert (rest.omega, rest.alpha) == (0.0, 0.0)
     assert live.state(60 * SECOND) == rest
-    assert abs(rest.motor_torque) < BRAKE
+    # it is the brake that holds, not the motor, which is off
+    assert rest.motor_torque == 0.0
+    assert 0.0 < abs(rest.brake_torque) < BRAKE
     assert live.stops == 0
 
 

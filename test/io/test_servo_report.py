@@ -7,15 +7,20 @@
 # language governing permissions and limitations under the License.
 """What a report says of a servo drive: set against actual positions of the same instants."""
 
+from dataclasses import replace
 from pathlib import Path
 import struct
 
 from cam_motion.cli import main
 from cam_motion.io.bag import BagWriter
+from cam_motion.io.bag.series import JointStateSeries
 from cam_motion.io.config import load_machine
+from cam_motion.io.findings import findings, notes
 from cam_motion.io.recording import read_recording
 from cam_motion.io.report import make_report
 from cam_motion.io.report_data import report_as_data
+from cam_motion.units import RPM
+import numpy as np
 import pytest
 
 pytestmark = pytest.mark.timeout(60)
@@ -71,3 +76,50 @@ def test_without_actual_positions_nothing_is_said_of_them(bag_of):
     report = make_report(read_recording(bag_of({})))
     assert report.drives['feeder_drive'].following_error is None
     assert 'peak_following_error' not in report_as_data(report)['drives']['feeder_drive']
+
+
+@pytest.fixture
+def report_of(bag_of):
+    """Report a run in which the motor has had given speeds [rpm] and torques."""
+    recording = read_recording(bag_of(dict.fromkeys(range(100), 1e-3)))
+
+    def report(speeds, torques, mode='servo'):
+        ticks = np.arange(len(speeds)) * 2_000_000
+        states = JointStateSeries(
+            names=('motor', 'load'), header_stamps_ns=ticks, stamps_ns=ticks,
+            positions=np.zeros((len(speeds), 2)),
+            velocities=np.array([[speed * RPM, 0.0] for speed in speeds]),
+            efforts=np.array([[torque, 0.0] for torque in torques]))
+        settings = MACHINE.drives['feeder_drive']
+        machine = replace(recording.machine, drives={'feeder_drive': replace(
+            settings, servo=settings.servo if mode == 'servo' else None)})
+        return make_report(replace(
+            recording, machine=machine, drives={'feeder_drive': states}))
+    return report
+
+
+def test_a_motor_at_its_peak_torque_is_a_finding(report_of):
+    overloaded = report_of([0.0, 1000.0, 2000.0, 0.0], [3.0, 47.6, -47.5, 47.0])
+    found, = findings(overloaded)
+    assert found == ('feeder_drive: its motor was at its peak torque in 2 states, with 47.6 N m; '
+                     'its axis was up to 0.001 m off its set position')
+    assert findings(report_of([0.0, 1000.0], [3.0, 47.0])) == []
+
+
+def test_beyond_the_corner_the_peak_torque_is_that_of_the_speed(report_of):
+    assert len(findings(report_of([4000.0], [31.7]))) == 1  # half way from 47.6 down to 15.8
+    assert findings(report_of([4000.0], [30.0])) == []
+
+
+def test_a_drive_that_follows_may_ask_for_more_than_its_motor_gives(report_of):
+    found, = findings(report_of([100.0, 3000.0], [47.6, -60.0], 'follow'))
+    assert found == ('feeder_drive: 1 state beyond the motor: at 3000 rpm it would take 60 N m, '
+                     'and the motor gives 47.6 N m')
+
+
+def test_a_motor_that_is_warm_for_good_is_a_note_and_no_finding(report_of):
+    warm = report_of([1000.0] * 10, [20.0] * 10)
+    assert findings(warm) == []
+    said = 'overheats the motor, which gives 15.8 N m for good'
+    assert any(said in note for note in notes(warm))
+    assert not any('overheats' in note for note in notes(report_of([1000.0] * 10, [15.0] * 10)))

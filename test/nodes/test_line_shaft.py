@@ -141,6 +141,7 @@ def test_a_late_wake_up_costs_time_but_no_jump(world, drive):
 def test_the_motor_is_switched_and_the_brake_applied_by_services(world, drive):
     node = drive(run_at_start=False)
     shaft = world.points('shaft')
+    states = world.listen(JointState, 'press_drive/drive_state')
 
     def run(on):
         return world.call(SetBool, 'press_drive/run', data=on).success
@@ -156,13 +157,19 @@ def test_the_motor_is_switched_and_the_brake_applied_by_services(world, drive):
     assert run(False)
     assert node.state_text == 'coasting'
     assert ask('quick_stop')
+    off = len(states) + 20  # later ones are those of a motor that is off, under the brake
     assert node.state_text == 'quick_stopping'
+    assert node.health()[1]['motor_torque'] == 0.0 or world.spin_until(
+        lambda: node.health()[1]['motor_torque'] == 0.0)
     assert not run(True)
     assert not ask('reset')
     assert world.spin_until(lambda: node.state_text == 'quick_stopped')
     assert shaft[-1].velocity == shaft[-1].acceleration == 0.0 or world.spin_until(
         lambda: shaft[-1].velocity == shaft[-1].acceleration == 0.0)
     assert not run(True)
+    assert {state.effort[0] for state in states[off:]} == {0.0}
+    assert any(state.effort[2] for state in states[off:])  # the brake, through the gearbox
+    assert node.health()[1]['brake_torque'] != 0.0  # the brake holds the load
     assert ask('reset')
     assert run(True)
     assert world.spin_until(lambda: shaft[-1].velocity > 1.0)
