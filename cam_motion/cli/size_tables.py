@@ -12,7 +12,7 @@ from __future__ import annotations
 from cam_motion.cli.terminal import console, number, row, table
 from cam_motion.drive.sizing import Candidate, Check, OBJECTIVES, RULES
 from cam_motion.drive.sizing_flywheel import SmallestFlywheel
-from cam_motion.io.sizing import CONFIGURED, Options, SizedDrive
+from cam_motion.io.sizing import CONFIGURED, Options, OTHER_RATIO, SizedDrive
 
 _COLUMNS = {
     'inverse': (
@@ -24,7 +24,7 @@ _COLUMNS = {
         ('motor_work_per_cycle', 'work\nJ')),
 }
 _NARROW = 100  # columns; below, the figures of second rank are left out
-_SECOND = ('rms_motor_torque', 'motor_work_per_cycle')
+_SECOND = ('rms_motor_torque', 'stability_pct', 'motor_work_per_cycle')
 _METHODS = {'inverse': 'inverse dynamics', 'forward': 'periodic motion'}
 
 
@@ -65,7 +65,8 @@ def print_sizing(sized: SizedDrive, options: Options, top: float, everything: bo
 
 
 def _choice(one: Candidate, short: bool = False) -> str:
-    box = '' if one.gearbox == CONFIGURED and short else f', gearbox {one.gearbox}'
+    own = one.gearbox in (CONFIGURED, OTHER_RATIO)
+    box = '' if own and short else f', gearbox {one.gearbox}'
     wheel = '' if one.flywheel is None else f', flywheel {number(one.flywheel, 4)} kg m²'
     return f'{one.motor}{box}, ratio {number(one.ratio)}{wheel}'
 
@@ -169,7 +170,7 @@ def flywheel_text(found: SmallestFlywheel, choice: tuple[str, str, float]) -> st
 
     """
     motor, gearbox, ratio = choice
-    drive = ('the configured drive' if motor == CONFIGURED else
+    drive = ('the configured drive' if motor == gearbox == CONFIGURED else
              f'{motor}, gearbox {gearbox}, ratio {number(ratio)}')
     wanted = f'a fluctuation of {number(found.wanted_pct)} %'
     if found.flywheel is None:

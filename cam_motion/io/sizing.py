@@ -9,13 +9,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 import math
 from typing import Any, NamedTuple
 
 from cam_motion.drive.gearbox import Gearbox
+from cam_motion.drive.motor import InductionMotor, KlossMotor
 from cam_motion.drive.sizing import Candidate, GearboxChoice, OBJECTIVES, rank, Sizing
 from cam_motion.drive.sizing_flywheel import smallest_flywheel, SmallestFlywheel
 from cam_motion.drive.sizing_forward import (
@@ -35,6 +36,9 @@ import numpy as np
 
 CONFIGURED = 'as configured'
 """Name of the motor and gearbox that the machine file describes."""
+
+OTHER_RATIO = 'other ratio'
+"""Name of that gearbox with another ratio than its own."""
 
 INERTIA_RATIO = 10.0
 """Largest ratio of inertias if none is wished: a rule of thumb, as makers of servos give it."""
@@ -180,7 +184,7 @@ def _size_cam_drive(settings: CamDriveSettings, catalogue: Catalogue, options: O
                     executor: Executor | None, tell: Callable[[int, int], None]) -> SizedDrive:
     drive = settings.drive
     pairs: list[Pair] = []
-    for choice in catalogue.motors:
+    for choice in (*_own_motor(settings), *catalogue.motors):
         speeds = np.linspace((1.0 - _BEYOND) * choice.rated_speed,
                              (1.0 + _BEYOND) * choice.motor.synchronous_speed, _BETWEEN)
         ratios = [drive.gearbox.ratio, *speeds / drive.nominal_speed]
@@ -199,14 +203,33 @@ def _size_cam_drive(settings: CamDriveSettings, catalogue: Catalogue, options: O
         (pair[0].name, pair[1].name, pair[1].gearbox.ratio))
 
 
+def _own_motor(settings: CamDriveSettings) -> Iterator[MotorChoice]:
+    """Give the motor of the machine file, unless it has no torque at its rated speed."""
+    motor, speed = settings.drive.motor, settings.rated_speed
+    torque = settings.values['motor.rated_torque'] or float(motor.torque(speed))
+    if torque > 0.0 and isinstance(motor, InductionMotor | KlossMotor):
+        yield MotorChoice(CONFIGURED, motor, torque * speed, torque, speed,
+                          float(motor.torque(0.0)))
+
+
 def _gearboxes(catalogue: Catalogue, own: Gearbox, ratios: Sequence[float],
                wanted: Sequence[float]) -> list[GearboxChoice]:
-    """Give the machine's own gearbox with each ratio, and those of the catalogue."""
+    """
+    Give the machine's own gearbox with each ratio, and those of the catalogue.
+
+    The file knows one torque for its own, which holds for good and for a moment, as in a
+    simulation; it goes with the gearbox whatever the ratio.
+    """
+    torque, speed = (math.inf if limit is None else limit
+                     for limit in (own.rated_torque, own.max_speed))
     free = sorted(wanted or ratios)
     different = [ratio for k, ratio in enumerate(free)
                  if k == 0 or ratio > free[k - 1] * (1.0 + _SAME)]
     return [
-        *(GearboxChoice(CONFIGURED, replace(own, ratio=float(ratio))) for ratio in different),
+        *(GearboxChoice(
+            CONFIGURED if math.isclose(ratio, own.ratio, rel_tol=_SAME) else OTHER_RATIO,
+            replace(own, ratio=float(ratio)), rated_torque=torque, peak_torque=torque,
+            max_speed=speed) for ratio in different),
         *(box for box in catalogue.gearboxes if not wanted or any(
             math.isclose(box.gearbox.ratio, ratio, rel_tol=_SAME) for ratio in wanted)),
     ]

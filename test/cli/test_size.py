@@ -47,7 +47,7 @@ def test_the_press_is_sized_by_periodic_motions(cam_motion, read_json):
     assert data['drives'] == {'press_drive': {
         key: value for key, value in data.items() if key != 'drives'}}
     assert (data['method'], data['objective']) == ('forward', 'power')
-    assert data['candidates'] == len(data['ranked']) + len(data['rejected']) == 3 * 2 * 2
+    assert data['candidates'] == len(data['ranked']) + len(data['rejected']) == 4 * 2 * 2
     best = data['ranked'][0]
     assert (best['motor'], best['ratio'], best['flywheel']) == ('NM 90L-4', 3.8, 0.1)
     assert best['fluctuation_pct'] < 5.0 and 'broke' not in best
@@ -71,7 +71,7 @@ def test_the_feeding_group_is_sized_by_inverse_dynamics(cam_motion, read_json, s
     data = read_json(done.stdout)
     assert (data['method'], data['smallest_flywheel']) == ('inverse', None)
     [best] = data['ranked']
-    assert (best['motor'], best['gearbox'], best['ratio']) == ('strong', 'as configured', 5.0)
+    assert (best['motor'], best['gearbox'], best['ratio']) == ('strong', 'other ratio', 5.0)
     assert best['flywheel'] is None
     assert best['inertia_ratio'] == pytest.approx(1.164 / 25.0 / 0.034)
     assert set(best['margins']) == {'peak_torque', 'rms_torque', 'speed', 'inertia_ratio'}
@@ -124,8 +124,8 @@ def test_top_shows_the_best_and_all_shows_every_rejected_one(cam_motion, small):
                  '0.1:0.4:3')
     one = cam_motion(*arguments, '--top', '1').stdout
     every = cam_motion(*arguments, '--all').stdout
-    assert '1 of 6, ranked by: smallest rated power' in one
-    assert '6 of 6' in every
+    assert '1 of 12, ranked by: smallest rated power' in one
+    assert '12 of 12' in every
     assert 'rejected, the nearest miss first' not in one
     assert 'rejected, the nearest miss first' in every
     listed = ' '.join(every.split())
