@@ -118,7 +118,8 @@ def _print_warnings(warnings: Sequence[Problem]) -> None:
     for (path, hint), rules in ways.items():
         for rule in rules:
             console().print(f'warning: {path}: {rule}', style='yellow')
-        console().print(f'  {hint}')
+        if hint:
+            console().print(f'  {hint}')
 
 
 def _print_axis(summary: AxisSummary, speed_cpm: float) -> None:

@@ -16,6 +16,7 @@ from pathlib import Path
 import re
 from typing import Any, TYPE_CHECKING
 
+from cam_motion.cli.differences import why_they_differ
 from cam_motion.cli.options import add_config, add_json
 from cam_motion.cli.terminal import (
     console,
@@ -30,7 +31,7 @@ from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.config import load_machine
 from cam_motion.io.machine import Machine
 from cam_motion.io.plain import plain
-from cam_motion.io.simulation import live_cycle, simulate, START_UP
+from cam_motion.io.simulation import live_cycle, simulate, start_up_until_settled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,11 +41,12 @@ _LABELS = {
     'peak_speed_rpm': ('peak motor speed', 'rpm'),
     'regenerated_energy_per_cycle': ('energy fed back per cycle', 'J'),
     'motor_work_per_cycle': ('work of the motor per cycle', 'J'),
+    'drawn_work_per_cycle': ('work drawn while it drives', 'J'),
     'inertia_ratio': ('inertia of the load to that of the motor', ''),
     'peak_torque_margin': ('least distance from the peak torque', 'N m'),
     'rms_torque_margin': ('distance of the RMS from the continuous torque', 'N m'),
     'speed_margin_rpm': ('distance from the largest speed', 'rpm'),
-    'mean_speed_rpm': ('mean motor speed', 'rpm'), 'peak_current': ('peak motor current', 'A'),
+    'mean_speed_rpm': ('mean speed', 'rpm'), 'peak_current': ('peak motor current', 'A'),
     'rms_current': ('RMS motor current', 'A'),
     'peak_following_error': ('peak following error', 'unit'),
     'rms_following_error': ('RMS following error', 'unit'),
@@ -55,11 +57,15 @@ _LABELS = {
     'running_cost_pct': ('running cost', '%'), 'period_s': ('period', 's'),
     'min_speed_rpm': ('least speed', 'rpm'), 'max_speed_rpm': ('greatest speed', 'rpm'),
     'min_contact_force': ('least contact force', 'N'),
+    'min_contact_force_deg': ('at shaft angle', 'deg'),
     'peak_gearbox_torque': ('peak torque behind the gearbox', 'N m'),
     'gearbox_torque_margin': ('distance from its rated torque', 'N m'),
     'gearbox_speed_margin_rpm': ('distance from its largest speed', 'rpm'),
     'first_crossing_s': ('nominal speed first reached', 's'),
     'settled_s': ('settled: it stays above', 's'),
+    'followed_s': ('followed for', 's'),
+    'start_torque': ('torque at rest, at the cam shaft', 'N m'),
+    'static_load_peak': ('peak of the static load', 'N m'),
     'steady_state_time_s': ('nominal speed first reached', 's'),
     'max_pressure_angle_deg': ('greatest pressure angle', 'deg'),
     'max_torque_estimate': ('torque at constant speed', 'N m'),
@@ -144,7 +150,6 @@ def _simulate(machine: Machine, arguments: argparse.Namespace, tell: Callable[[s
 def _pictures(machine: Machine) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """Give the pictures of all drives: name of the file and how to draw it."""
     from cam_motion.drive.orbit import find_orbit
-    from cam_motion.drive.start_up import start_up
     from cam_motion.io import plots
     for name, follower in machine.drives.items():
         curve = plots.torque_curve(
@@ -156,7 +161,8 @@ def _pictures(machine: Machine) -> Iterator[tuple[str, Callable[[], Figure]]]:
             unit = machine.diagram.axes[follower.axis].unit
             yield f'following_{name}', partial(plots.following_figure, name, live, unit)
     for name, drive in machine.cam_drives.items():
-        orbit, run = find_orbit(drive.drive), start_up(drive.drive, START_UP)
+        orbit = find_orbit(drive.drive)
+        run = start_up_until_settled(drive.drive, orbit)
         yield f'cam_{name}', partial(plots.cam_figure, drive)
         yield f'load_{name}', partial(plots.load_figure, drive)
         yield f'motor_{name}', partial(plots.motor_figure, drive, orbit)
@@ -196,31 +202,12 @@ def _print(name: str, result: dict[str, Any], unit: str) -> None:
             unit if label[1] == 'unit' else label[1])
     console().print(shown)
     if 'document' in parts:
-        console().print(_why_they_differ(result))
+        console().print(why_they_differ(result))
+    for warning in result.get('warnings', ()):
+        console().print(f'warning: {warning}', style='bold yellow')
 
 
 def _text(value: float | bool | None) -> str:
     if isinstance(value, bool):
         return 'yes' if value else 'no'
     return '–' if value is None else number(value, 6)
-
-
-def _why_they_differ(result: dict[str, Any]) -> str:
-    """Say where the document's definitions hide something, with the figures."""
-    orbit, start, document = result['orbit'], result['start_up'], result['document']
-    said = ["The document's definitions and the motion itself differ:"]
-    if document['min_contact_force'] < orbit['min_contact_force'] * (1.0 - 1e-3):
-        said.append(
-            f'the least contact force {document["min_contact_force"]:.1f} N belongs to the '
-            f'start-up; in periodic motion it is {orbit["min_contact_force"]:.1f} N.')
-    if abs(document['fluctuation_pct'] - orbit['fluctuation_pct']) > 1e-3:
-        said.append(
-            f'the fluctuation {document["fluctuation_pct"]:.3f} % is read from one third of the '
-            'time on, which still holds the end of the start-up; the periodic motion has '
-            f'{orbit["fluctuation_pct"]:.3f} %.')
-    settled, first = start['settled_s'], start['first_crossing_s']
-    if settled is not None and first is not None and settled > first:
-        said.append(
-            f'the nominal speed is first reached at {first:.4f} s, but lost again until '
-            f'{settled:.4f} s.')
-    return ' '.join(said) if len(said) > 1 else 'Both sets of definitions agree here.'

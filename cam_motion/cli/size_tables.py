@@ -9,6 +9,8 @@
 
 from __future__ import annotations
 
+import math
+
 from cam_motion.cli.terminal import console, number, row, table
 from cam_motion.drive.sizing import Candidate, Check, OBJECTIVES, RULES
 from cam_motion.drive.sizing_flywheel import SmallestFlywheel
@@ -103,7 +105,7 @@ def _print_rejections(sized: SizedDrive) -> None:
 
 
 def _by(check: Check) -> str:
-    if check.failed:
+    if check.failed or not math.isfinite(check.by_pct):
         return '–'
     return f'{number(check.by_pct, 3)} %'
 
@@ -127,6 +129,8 @@ def reason(check: Check) -> str:
     if check.failed:
         return (f'{check.rule}: none; the motor gives up to {number(check.value, 4)}{unit} at the '
                 f'cam shaft, the load takes up to {number(check.bound, 4)}{unit}')
+    if check.rule == 'contact':
+        return f'contact: {number(check.value, 4)}{unit} on the cam: the follower lifts off'
     word = 'at least' if check.at_least else 'at most'
     return (f'{check.rule}: {number(check.value, 4)}{unit}, {word} '
             f'{number(check.bound, 4)}{unit} allowed: off by {number(check.by_pct, 3)} %')

@@ -12,8 +12,9 @@ from __future__ import annotations
 from functools import reduce
 from typing import NamedTuple
 
+from cam_motion.drive.batch_contact import least_follower_force
 from cam_motion.drive.batch_orbit import horner, Motions
-from cam_motion.drive.cells import LoadTable, NODES, Numbers, POINTS, RULE, weigh
+from cam_motion.drive.cells import Flags, LoadTable, NODES, Numbers, POINTS, RULE, transform, weigh
 from cam_motion.drive.collocation import gauss_rule
 from cam_motion.drive.designs import Shafts
 from cam_motion.drive.orbit import Orbit
@@ -25,6 +26,8 @@ _HALVINGS = 60
 _FLAT = 1e-5  # share of the energy per radian; a slower crossing is a dwell at idle speed
 _GAPS: Array = np.diff(NODES)
 _FINE = gauss_rule(2 * POINTS)
+_INTEGRALS: Array = (np.linalg.inv(np.vander(NODES, increasing=True))
+                     / np.arange(1.0, NODES.size + 1.0)[:, None])
 
 
 class Figures(NamedTuple):
@@ -32,8 +35,9 @@ class Figures(NamedTuple):
     Figures of periodic motions, arrays of shape (n,).
 
     Speed of the cam shaft at q = 0, least and greatest [rad/s]; duration of a revolution [s];
-    work [J], RMS over time and greatest magnitude of the torque [N m], all at the motor shaft;
-    by how much a disturbance of the energy is multiplied in a revolution [-].
+    work, and work while the motor drives [J], RMS over time and greatest magnitude of the torque
+    [N m], all at the motor shaft; least force that presses the follower on the cam [N]; by how
+    much a disturbance of the energy is multiplied in a revolution [-].
     """
 
     start_speed: Array
@@ -41,8 +45,10 @@ class Figures(NamedTuple):
     max_speed: Array
     period: Array
     motor_work: Array
+    drawn_work: Array
     rms_motor_torque: Array
     peak_motor_torque: Array
+    least_follower_force: Array
     multiplier: Array
 
 
@@ -61,32 +67,63 @@ def reversals(motions: Motions) -> tuple[Numbers, Array]:
         How many there are, shape (n,), and the shaft angles [rad], one design after the other,
         rising for each; places right at the ends of cells may lie on either side.
 
-    Notes
-    -----
-    The torque is zero at the idle speed w0, and E - J w0²/2 with it. Between the nodes that is
-    Hermite's cubic through its values and its slopes Q - C w0².
-
     """
-    shafts, cells = motions.shafts, motions.cells
-    idle = shafts.idle_speed ** 2
-    energy, inertia, power, _ = motions.at_nodes
-    over = energy - 0.5 * inertia * idle
-    over[0, 1:] = over[-1, :-1] = 0.5 * (over[0, 1:] + over[-1, :-1])
-    above = over > 0.0
-    lossy = shafts.driving < shafts.driven
-    steep = np.abs(np.diff(over, axis=0)) > _FLAT * energy[:-1] * (
-        cells.span * _GAPS[:, None, None])
-    place = np.nonzero((above[:-1] != above[1:]) & steep & lossy)
-    node, cell, design = place
-    after = (node + 1, cell, design)
-    slope = power - cells.centripetal * idle
+    over = _over_idle(motions)
+    lossy = motions.shafts.driving < motions.shafts.driven
+    steep = np.abs(np.diff(over, axis=0)) > _FLAT * motions.at_nodes.energy[:-1] * (
+        motions.cells.span * _GAPS[:, None, None])
+    (_, cell, design), x = _crossings(motions, over, steep & lossy)
     start, span = (np.broadcast_to(x, over.shape[1:])[cell, design]
-                   for x in (cells.start, cells.span))
-    gap = span * _GAPS[node]
-    x = _root(over[place], over[after], gap * slope[place], gap * slope[after])
-    angles = start + span * (NODES[node] + _GAPS[node] * x)
+                   for x in (motions.cells.start, motions.cells.span))
+    angles = start + span * x
     order = np.lexsort((angles, design))
     return np.bincount(design, minlength=lossy.size), angles[order]
+
+
+def _over_idle(motions: Motions) -> Array:
+    """Give E - J w0²/2 at the nodes: below 0 where the motors drive, above where they do not."""
+    energy, inertia, _, _ = motions.at_nodes
+    over = energy - 0.5 * inertia * motions.shafts.idle_speed ** 2
+    over[0, 1:] = over[-1, :-1] = 0.5 * (over[0, 1:] + over[-1, :-1])
+    return over
+
+
+def _crossings(motions: Motions, over: Array, among: Flags | bool,
+               ) -> tuple[tuple[Numbers, ...], Array]:
+    """
+    Find between which nodes, and where in the cells, the motors' torques change their sign.
+
+    The torque is zero at the idle speed w0, and E - J w0²/2 with it. Between the nodes that is
+    Hermite's cubic through its values and its slopes Q - C w0².
+    """
+    shafts, cells = motions.shafts, motions.cells
+    above = over > 0.0
+    place = np.nonzero((above[:-1] != above[1:]) & among)
+    node, cell, design = place
+    after = (node + 1, cell, design)
+    slope = motions.at_nodes.power - cells.centripetal * shafts.idle_speed ** 2
+    gap = np.broadcast_to(cells.span, over.shape[1:])[cell, design] * _GAPS[node]
+    x = _root(over[place], over[after], gap * slope[place], gap * slope[after])
+    return place, NODES[node] + _GAPS[node] * x
+
+
+def _driving(motions: Motions, torque: Array) -> Array:
+    """
+    Integrate the torques of the motors, given at the nodes, over the angle where they drive.
+
+    In each cell it is the integral up to its end, if the motor drives there, plus that up to
+    each place where it ceases to and less that up to each where it begins to.
+    """
+    cells, over = motions.cells, _over_idle(motions)
+    whole = cells.span * weigh(RULE.weights, torque[1:-1])
+    drawn = np.where(over[-1] > 0.0, 0.0, whole)
+    (node, cell, design), x = _crossings(motions, over, True)
+    terms = transform(_INTEGRALS, torque[:, cell, design])
+    passed = np.broadcast_to(cells.span, whole.shape)[cell, design] * x * horner(terms, x)
+    ceases = over[node + 1, cell, design] > 0.0
+    np.add.at(drawn, (cell, design), np.where(ceases, passed, -passed))
+    found: Array = reduce(np.add, drawn)
+    return found
 
 
 def _root(low: Array, high: Array, low_slope: Array, high_slope: Array) -> Array:
@@ -137,7 +174,8 @@ def figures(motions: Motions, table: LoadTable) -> Figures:
         for values in (slowness, inner, inner * inner * slowness, slope[1:-1]))
     peak = np.maximum(np.max(np.abs(torque), axis=(0, 1)), _peak(shafts, slowest, fastest))
     return Figures(omega[0, 0], slowest, fastest, period, shafts.ratio * work,
-                   np.sqrt(heat / period), peak, np.exp(exponent))
+                   shafts.ratio * _driving(motions, torque), np.sqrt(heat / period), peak,
+                   least_follower_force(motions, table), np.exp(exponent))
 
 
 def figures_of(orbit: Orbit, shaft: Shafts) -> Figures:
@@ -167,8 +205,9 @@ def figures_of(orbit: Orbit, shaft: Shafts) -> Figures:
         heat += stretch.span * float(_FINE.weights @ (torque ** 2 / omega)[1:])
     peak = _peak(shaft, np.array([slowest]), np.array([fastest]))
     return Figures(*np.array([
-        start, slowest, fastest, orbit.period, orbit.motor_work, (heat / orbit.period) ** 0.5,
-        peak[0], orbit.multiplier])[:, None])
+        start, slowest, fastest, orbit.period, orbit.motor_work, orbit.drawn_work,
+        (heat / orbit.period) ** 0.5, peak[0], orbit.least_follower_force,
+        orbit.multiplier])[:, None])
 
 
 def _extremes(motions: Motions, table: LoadTable, square: Array, slope: Array,

@@ -122,6 +122,34 @@ class Motions:
         found: Array = self.cells.span * transform(_INTEGRALS, self.at_nodes.power[1:-1])
         return found
 
+    def energy_at(self, q: Array) -> Array:
+        """
+        Give the energy at any angles.
+
+        Parameters
+        ----------
+        q : ndarray, shape (..., 1)
+            Shaft angles within one turn [rad].
+
+        Returns
+        -------
+        ndarray, shape (..., n)
+            Kinetic energy [J].
+
+        """
+        flat = q.reshape(-1, 1)
+        mine = np.sum(self.cells.start[1:, None] <= flat, axis=0)
+        start, span = (np.take_along_axis(x, mine, axis=0)
+                       for x in (self.cells.start, self.cells.span))
+        x = (flat - start) / span
+        if mine.shape[1] == 1:
+            first, terms = self.first[mine[:, 0]], self.polynomials[:, mine[:, 0]]
+        else:
+            first = np.take_along_axis(self.first, mine, axis=0)
+            terms = np.take_along_axis(self.polynomials, mine[None], axis=1)
+        energy: Array = first + x * horner(terms, x)
+        return energy.reshape(*q.shape[:-1], -1)
+
     def over(self, cells: Cells) -> tuple[Array, Array]:
         """
         Give the energy in other cells.

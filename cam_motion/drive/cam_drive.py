@@ -292,7 +292,26 @@ class CamDrive:
             Force [N] along the common normal; negative where the follower would lift off.
 
         """
-        along = sum((part.follower_force(at, omega, alpha) for part in self.parts),
-                    np.zeros_like(at.q))
+        along = self.follower_force(at, omega, alpha)
         normal: Array = along * np.hypot(at.s1, base + at.s) / (base + at.s)
         return normal
+
+    def follower_force(self, at: Follower, omega: Array, alpha: Array) -> Array:
+        """
+        Give the force that presses the follower on the cam, along its own way.
+
+        Parameters
+        ----------
+        at : Follower
+            Where the follower is.
+        omega, alpha : ndarray
+            Speed [rad/s] and acceleration [rad/s²] of the cam shaft.
+
+        Returns
+        -------
+        ndarray
+            Force [N], with the sign of the contact force whatever the size of the cam.
+
+        """
+        return sum((part.follower_force(at, omega, alpha) for part in self.parts),
+                   np.zeros_like(at.q))

@@ -11,10 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any
 
 from cam_motion.drive.cam_drive import CamDrive
 from cam_motion.drive.collocation import gauss_rule, GaussRule
+from cam_motion.drive.load import Follower, Terms
 from cam_motion.motion.piece import Array
 import numpy as np
 
@@ -26,6 +28,9 @@ Flags = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
 
 POINTS = 8
 """Gauss points per cell: order 16; where Q is too rough for them, cells are halved."""
+
+
+_DENSE = 17  # places per element, of at most 60 degrees, at which contact forces are looked at
 
 
 @dataclass(frozen=True)
@@ -97,6 +102,33 @@ class LoadTable:
         q = start + span * NODES[:, None, None]
         columns = [self.terms(k, q[:, k, 0]) for k in range(len(drive.elements))]
         self.whole = Cells(whole, start, span, *np.stack(columns, axis=2)[..., None])
+
+    @cached_property
+    def dense(self) -> tuple[Follower, Terms]:
+        """Give follower and load at places spread over each element, shape (_DENSE, K, 1)."""
+        drive = self._drive
+        each = [drive.follower(e, np.linspace(e.start, e.end, _DENSE)) for e in drive.elements]
+        columns = [self.terms(k, at.q) for k, at in enumerate(each)]
+        return (Follower(*(np.stack(x, axis=1)[..., None] for x in zip(*each))),
+                Terms(*np.stack(columns, axis=2)[..., None]))
+
+    def follower_force(self, omega: Array, alpha: Array) -> Array:
+        """
+        Give the force that presses the followers on the cam, at the places of `dense`.
+
+        Parameters
+        ----------
+        omega, alpha : ndarray, shape (_DENSE, K, n)
+            Speed [rad/s] and acceleration [rad/s²] of the cam shaft.
+
+        Returns
+        -------
+        ndarray, shape (_DENSE, K, n)
+            Force along the way of the follower [N].
+
+        """
+        at = self.dense[0]
+        return np.broadcast_to(self._drive.follower_force(at, omega, alpha), omega.shape)
 
     def terms(self, element: int, q: Array) -> Array:
         """

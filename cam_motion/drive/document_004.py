@@ -62,7 +62,7 @@ class DocumentMetrics:
     fluctuation_pct : float
         Difference of greatest and least speed by the nominal speed [%].
     running_cost_pct : float
-        Distance of the mean of both from the nominal speed, as the same share [%].
+        Distance of the mean of both, at the motor, from its rated speed, as the same share [%].
     min_contact_force : float
         Least contact force, the start-up included [N].
     max_pressure_angle_deg : float
@@ -85,7 +85,7 @@ class DocumentMetrics:
 
 
 def document_metrics(drive: CamDrive, base: float, step: float = 1e-5, duration: float = 3.0,
-                     ) -> DocumentMetrics:
+                     rated_speed: float | None = None) -> DocumentMetrics:
     """
     Simulate a drive as document 004 does, and take its figures as it does.
 
@@ -100,6 +100,9 @@ def document_metrics(drive: CamDrive, base: float, step: float = 1e-5, duration:
         from 1e-5.
     duration : float
         How long, from rest [s].
+    rated_speed : float, optional
+        Rated speed of the motor, from which the running cost counts [rad/s]; without one it is
+        that at the nominal speed of the cam shaft.
 
     Returns
     -------
@@ -148,6 +151,7 @@ def document_metrics(drive: CamDrive, base: float, step: float = 1e-5, duration:
     window = history.omega[math.ceil((history.t.size + 1) / 3) - 1:]
     slowest, fastest = float(np.min(window)), float(np.max(window))
     ratio = drive.gearbox.ratio
+    rated = ratio * drive.nominal_speed if rated_speed is None else rated_speed
     breakdown = (1.0 - motor.breakdown_slip) * motor.synchronous_speed
     span = motor.synchronous_speed - breakdown
     mean = 0.5 * (slowest + fastest)
@@ -156,7 +160,7 @@ def document_metrics(drive: CamDrive, base: float, step: float = 1e-5, duration:
         steady_state_time_s=float(history.t[above[0]]) if above.size else None,
         stability_pct=100.0 * (ratio * slowest - breakdown) / span,
         fluctuation_pct=100.0 * (fastest - slowest) / drive.nominal_speed,
-        running_cost_pct=100.0 * ratio * abs(mean - drive.nominal_speed) / span,
+        running_cost_pct=100.0 * abs(ratio * mean - rated) / span,
         min_contact_force=float(np.min(history.contact_force)),
         max_pressure_angle_deg=angle / DEGREE,
         max_torque_estimate=torque,

@@ -14,16 +14,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from cam_motion.drive.approach import approach, Road
-from cam_motion.drive.cam_drive import CamDrive
+from cam_motion.drive.cam_drive import CamDrive, POINTS
 from cam_motion.drive.cells import LoadTable
 from cam_motion.drive.collocation import gauss_rule
 from cam_motion.drive.course import Course
 from cam_motion.drive.designs import Designs, Shafts
 from cam_motion.drive.load import Follower
 from cam_motion.drive.passage import settle
-from cam_motion.drive.stretch import least, least_contact_force, passing, Stretch
+from cam_motion.drive.stretch import least, least_contact, passing, Stretch
 from cam_motion.errors import CamMotionError, ConfigurationError
 from cam_motion.motion.piece import Array
+from cam_motion.motion.piecewise import Peak
 from cam_motion.units import RPM, TURN
 import numpy as np
 
@@ -64,10 +65,10 @@ class Orbit:
     @cached_property
     def speeds(self) -> tuple[float, float]:
         """Find the least and the greatest speed of the cam shaft [rad/s]."""
-        return (least(self.stretches, lambda _, omega: omega),
-                least(self.stretches, lambda _, omega: omega, -1.0))
+        return (least(self.stretches, lambda _, omega: omega).value,
+                least(self.stretches, lambda _, omega: omega, -1.0).value)
 
-    def least_contact_force(self, base: float) -> float:
+    def least_contact(self, base: float) -> Peak:
         """
         Find the least force between cam and roller, steps taken from both sides.
 
@@ -78,11 +79,18 @@ class Orbit:
 
         Returns
         -------
-        float
-            Force [N].
+        Peak
+            Force [N], negative where the follower would lift off, and shaft angle [rad].
 
         """
-        return least_contact_force(self.stretches, base)
+        return least_contact(self.stretches, base)
+
+    @cached_property
+    def least_follower_force(self) -> float:
+        """Find the least force that presses the follower on the cam, along its way [N]."""
+        drive = self.stretches[0].drive
+        return least(self.stretches, lambda at, omega: drive.follower_force(
+            at, omega, drive.acceleration(at, omega))).value
 
     @cached_property
     def motor_work(self) -> float:
@@ -95,6 +103,24 @@ class Orbit:
         return total
 
     @cached_property
+    def drawn_work(self) -> float:
+        """Sum the work of the motor while it drives over one revolution [J]."""
+        drive = self.stretches[0].drive
+        ratio, rule = drive.gearbox.ratio, gauss_rule(POINTS)
+        synchronous = drive.motor.synchronous_speed / ratio
+        cuts: dict[int, list[float]] = {}
+        for stretch, angle, _ in passing(self.stretches, synchronous):
+            cuts.setdefault(id(stretch), []).append(angle)
+        total = 0.0
+        for stretch in self.stretches:
+            ends = [stretch.element.start, *cuts.get(id(stretch), ()), stretch.element.end]
+            for start, end in zip(ends, ends[1:]):
+                omega = stretch.omega(start + (end - start) * rule.points)
+                torque = float(rule.weights @ drive.motor.torque(ratio * omega))
+                total += ratio * (end - start) * max(torque, 0.0)
+        return total
+
+    @cached_property
     def peak_gearbox_torque(self) -> float:
         """Find the largest magnitude of the torque between gearbox and cam shaft [N m]."""
         drive = self.stretches[0].drive
@@ -104,7 +130,7 @@ class Orbit:
             # what the motor gives, without what rotor and flywheel take up themselves
             torque = drive.motor_torque(omega) - own * drive.acceleration(at, omega)
             return np.asarray(np.abs(torque))
-        return least(self.stretches, passed, -1.0)
+        return least(self.stretches, passed, -1.0).value
 
     def power_reversals(self) -> list[float]:
         """

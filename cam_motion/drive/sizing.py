@@ -141,6 +141,7 @@ RULES = {
     'starts_from_rest': 'torque at rest against the peak of the static load, at the cam shaft',
     'mean_speed': 'mean speed off the nominal one',
     'fluctuation': 'speed fluctuation',
+    'contact': 'least force that presses the follower on its cam',
     'peak_torque': 'peak motor torque against the peak torque at that speed',
     'rms_torque': 'RMS motor torque against the continuous torque',
     'stability': 'stability: distance of the slowest moment from breakdown',

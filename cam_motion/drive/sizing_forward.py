@@ -16,17 +16,15 @@ import math
 from typing import Any, NamedTuple
 
 from cam_motion.drive.cam_drive import CamDrive
-from cam_motion.drive.collocation import gauss_rule
 from cam_motion.drive.designs import Designs
 from cam_motion.drive.motor import InductionMotor, KlossMotor
+from cam_motion.drive.shaft_load import ShaftLoad
 from cam_motion.drive.sizing import Candidate, Check, GearboxChoice, Progress, silent
 from cam_motion.drive.sizing_inverse import gearbox_checks
 from cam_motion.drive.sweep import OrbitTable, sweep
 from cam_motion.units import RPM, TURN
 import numpy as np
 
-_DENSE = 129  # angles per element at which the peak of the load is looked for
-_POINTS = 8
 _CHUNK = 512  # designs per task: the progress is seen, at a fifth less speed than the fastest
 
 Sweep = Callable[..., OrbitTable]
@@ -79,55 +77,6 @@ class Wishes(NamedTuple):
     speed_tolerance_pct: float = 5.0
     start_margin_pct: float = 10.0
     stability_pct: float = 25.0
-
-
-class ShaftLoad:
-    """
-    The load of a cam shaft, whatever turns it.
-
-    Parameters
-    ----------
-    drive : CamDrive
-        The drive; its motor, gearbox and flywheel do not count.
-
-    """
-
-    def __init__(self, drive: CamDrive) -> None:
-        """Tabulate the load over the shaft angle."""
-        rule = gauss_rule(_POINTS)
-        dense, inner = [], []
-        for element in drive.elements:
-            span = element.end - element.start
-            dense.append(drive.terms(drive.follower(
-                element, np.linspace(element.start, element.end, _DENSE))))
-            inner.append(drive.terms(drive.follower(
-                element, element.start + span * rule.points)))
-        self._dense, self._inner = (
-            tuple(np.concatenate([getattr(terms, name) for terms in table])
-                  for name in ('centripetal', 'force', 'damping')) for table in (dense, inner))
-        self._weights = np.concatenate(
-            [(e.end - e.start) * rule.weights for e in drive.elements]) / TURN
-        self.static_peak = max(0.0, -float(np.min(self._dense[1])))
-
-    def torques(self, omega: float) -> tuple[float, float]:
-        """
-        Give the torque that turns the shaft at a constant speed.
-
-        Parameters
-        ----------
-        omega : float
-            The speed [rad/s].
-
-        Returns
-        -------
-        tuple[float, float]
-            Peak of its magnitude, and RMS over the shaft angle [N m].
-
-        """
-        dense, inner = (c * omega * omega - q0 - q1 * omega
-                        for c, q0, q1 in (self._dense, self._inner))
-        return (float(np.max(np.abs(dense))),
-                math.sqrt(float(self._weights @ inner ** 2)))
 
 
 Pair = tuple[MotorChoice, GearboxChoice]
@@ -236,7 +185,8 @@ def _candidate(nominal: float, load: ShaftLoad, pair: Pair, flywheel: float, wis
         'stability_pct': 100.0 * (ratio * low - breakdown) / working,
         'period_s': period, 'min_speed_rpm': low / RPM, 'max_speed_rpm': high / RPM,
         'mean_speed_rpm': mean / RPM, 'motor_work_per_cycle': float(orbit.motor_work),
-        'drawn_work_per_cycle': float(orbit.motor_work),
+        'drawn_work_per_cycle': float(orbit.drawn_work),
+        'least_follower_force': float(orbit.least_follower_force),
         'rms_motor_torque': float(orbit.rms_motor_torque),
         'peak_motor_torque': float(orbit.peak_motor_torque),
     }
@@ -246,6 +196,7 @@ def _candidate(nominal: float, load: ShaftLoad, pair: Pair, flywheel: float, wis
         start,
         Check('mean_speed', 100.0 * abs(mean / nominal - 1.0), wishes.speed_tolerance_pct, '%'),
         Check('fluctuation', figures['fluctuation_pct'], wishes.fluctuation_pct, '%'),
+        Check('contact', figures['least_follower_force'], 0.0, 'N', at_least=True),
         Check('rms_torque', figures['rms_motor_torque'], choice.rated_torque, 'N m'),
         Check('stability', figures['stability_pct'], wishes.stability_pct, '%', at_least=True),
         *gearbox_checks(box, 1.0 / period, torques, (ratio * mean, ratio * high)),

@@ -18,9 +18,11 @@ from cam_motion.drive.cam_drive import CamDrive, Element, POINTS
 from cam_motion.drive.collocation import gauss_rule
 from cam_motion.drive.course import Course
 from cam_motion.drive.passage import Passage, settle, solve
-from cam_motion.drive.stretch import least_contact_force, passing, Stretch
+from cam_motion.drive.shaft_load import ShaftLoad
+from cam_motion.drive.stretch import least_contact, passing, Stretch
 from cam_motion.errors import CamMotionError
 from cam_motion.motion.piece import Array
+from cam_motion.motion.piecewise import Peak
 from cam_motion.units import DEGREE, RPM, TURN
 import numpy as np
 
@@ -119,7 +121,7 @@ class StartUp:
         return [float(stretch.times(np.array([angle]))[0])
                 for stretch, angle, up in passing(self.stretches, speed) if up]
 
-    def least_contact_force(self, base: float) -> float:
+    def least_contact(self, base: float) -> Peak:
         """
         Find the least force between cam and roller, the launch included.
 
@@ -130,15 +132,17 @@ class StartUp:
 
         Returns
         -------
-        float
-            Force [N].
+        Peak
+            Force [N], negative where the follower would lift off, and shaft angle [rad].
 
         """
         drive = self.launch.drive
         angles, omegas = self.launch.state(np.linspace(0.0, self.launch.duration, 65))
         at = drive.follower(drive.elements[0], angles)
         first = drive.contact_force(at, omegas, drive.acceleration(at, omegas), base)
-        return min(float(np.min(first)), least_contact_force(self.stretches, base))
+        low = int(np.argmin(first))
+        return min(Peak(float(first[low]), float(angles[low])),
+                   least_contact(self.stretches, base))
 
     @cached_property
     def history(self) -> tuple[Array, Array, Array]:
@@ -244,8 +248,14 @@ def _stall(course: Course, energy: float) -> StallError:
     speed = math.sqrt(2.0 * energy / float(course.terms.inertia[0, 0]))
     return StallError(
         f'the motor stalls at {course.elements[0].start / DEGREE:.1f} deg of the cam shaft, where '
-        f'{speed / RPM:.1f} rpm are left; take a stronger motor, a larger ratio or a larger '
-        'flywheel')
+        f'{speed / RPM:.1f} rpm are left; {_against_the_load(course.drive)}; take a stronger '
+        'motor, a larger ratio or a larger flywheel')
+
+
+def _against_the_load(drive: CamDrive) -> str:
+    torque = float(drive.motor_torque(np.zeros(1))[0])
+    return (f'at rest it gives {torque:.4g} N m at the cam shaft, and must exceed the '
+            f'{ShaftLoad(drive).static_peak:.4g} N m that the static load takes up to')
 
 
 def _launch(drive: CamDrive) -> Launch:

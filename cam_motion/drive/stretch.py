@@ -17,6 +17,7 @@ from cam_motion.drive.cam_drive import CamDrive, Element
 from cam_motion.drive.collocation import gauss_rule
 from cam_motion.drive.load import Follower
 from cam_motion.motion.piece import Array
+from cam_motion.motion.piecewise import Peak
 import numpy as np
 
 _DENSE = 33  # points among which extremes are looked for before they are refined
@@ -251,7 +252,7 @@ def passing(stretches: Sequence[Stretch], speed: float) -> list[tuple[Stretch, f
 
 
 def least(stretches: Sequence[Stretch], value: Callable[[Follower, Array], Array],
-          sign: float = 1.0) -> float:
+          sign: float = 1.0) -> Peak:
     """
     Find the least value of something over several stretches, steps taken from both sides.
 
@@ -266,8 +267,8 @@ def least(stretches: Sequence[Stretch], value: Callable[[Follower, Array], Array
 
     Returns
     -------
-    float
-        The value, refined between the points looked at.
+    Peak
+        The value, refined between the points looked at, and its shaft angle [rad].
 
     """
     dense = sign * value(*sample(stretches, _EVEN))
@@ -277,7 +278,8 @@ def least(stretches: Sequence[Stretch], value: Callable[[Follower, Array], Array
                         dense[rows, np.minimum(lows + 1, _DENSE - 1)])
     # a parabola dips less than a quarter of this between the points
     reach = lowest - (around - lowest)
-    best = float(np.min(lowest))
+    first = int(np.argmin(lowest))
+    best, place = float(lowest[first]), (first, float(_EVEN[lows[first]]))
     for row in np.argsort(reach).tolist():
         if reach[row] >= best:
             break
@@ -286,11 +288,13 @@ def least(stretches: Sequence[Stretch], value: Callable[[Follower, Array], Array
             x = np.linspace(x[max(low - 1, 0)], x[min(low + 1, _DENSE - 1)], _DENSE)
             values = sign * value(*sample(stretches[row:row + 1], x))[0]
             low = int(np.argmin(values))
-        best = min(best, float(values[low]))
-    return sign * best
+        if values[low] < best:
+            best, place = float(values[low]), (row, float(x[low]))
+    stretch = stretches[place[0]]
+    return Peak(sign * best, stretch.element.start + stretch.span * place[1])
 
 
-def least_contact_force(stretches: Sequence[Stretch], base: float) -> float:
+def least_contact(stretches: Sequence[Stretch], base: float) -> Peak:
     """
     Find the least force between cam and roller, steps taken from both sides.
 
@@ -303,8 +307,8 @@ def least_contact_force(stretches: Sequence[Stretch], base: float) -> float:
 
     Returns
     -------
-    float
-        Force [N].
+    Peak
+        Force [N] and shaft angle [rad].
 
     """
     drive = stretches[0].drive

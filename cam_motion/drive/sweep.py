@@ -62,10 +62,15 @@ class OrbitTable(NamedTuple):
         Duration of a revolution [s].
     motor_work : ndarray
         Work of the motor at its own shaft over a revolution [J].
+    drawn_work : ndarray
+        The same while the motor drives, without what it is driven with [J].
     rms_motor_torque : ndarray
         Root of the mean square over time of the torque at the motor shaft [N m].
     peak_motor_torque : ndarray
         Greatest magnitude of the torque at the motor shaft [N m].
+    least_follower_force : ndarray
+        Least force that presses the follower on the cam, along its own way, to about a
+        thousandth of its swing [N]; negative where it would lift off.
     multiplier : ndarray
         By how much a disturbance of the energy is multiplied in a revolution [-].
 
@@ -77,8 +82,10 @@ class OrbitTable(NamedTuple):
     max_speed: Array
     period: Array
     motor_work: Array
+    drawn_work: Array
     rms_motor_torque: Array
     peak_motor_torque: Array
+    least_follower_force: Array
     multiplier: Array
 
 
@@ -101,7 +108,8 @@ def sweep_orbits(profile: CamProfile, parts: Sequence[Part], nominal_speed: floa
     Returns
     -------
     OrbitTable
-        What `orbit.find_orbit` finds, to 1e-6.
+        What `orbit.find_orbit` finds, to 1e-6; the work drawn through a gearbox without losses
+        to 1e-5, the least force as said there.
 
     Raises
     ------

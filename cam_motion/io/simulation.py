@@ -12,21 +12,28 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from cam_motion.drive.cam_drive import CamDrive
 from cam_motion.drive.cycle import cycle_figures
 from cam_motion.drive.document_004 import document_metrics
 from cam_motion.drive.gearbox import Gearbox
 from cam_motion.drive.orbit import find_orbit, NoOrbitError, Orbit
 from cam_motion.drive.servo_cycle import limit_figures, servo_cycle, ServoCycle
+from cam_motion.drive.shaft_load import ShaftLoad
 from cam_motion.drive.start_up import StallError, start_up, StartUp
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.cam_drive_config import CamDriveSettings
+from cam_motion.io.cam_drive_findings import motion_findings, start_up_findings
 from cam_motion.io.machine import DriveSettings, Machine
 from cam_motion.io.summary_data import margins_as_data
 from cam_motion.runtime.ticks import NANOSECONDS
-from cam_motion.units import RPM
+from cam_motion.units import DEGREE, RPM, TURN
+import numpy as np
 
 START_UP = 3.0
-"""How long a start-up is followed, as the document does [s]."""
+"""How long a start-up is followed at least, as the document does [s]."""
+
+LONGEST_START_UP = 60.0
+"""How long at most, where it is not over before [s]."""
 
 _BAND = 1e-3  # below the least speed of the orbit by this share the start-up is not over
 
@@ -69,12 +76,16 @@ def simulate(machine: Machine, document: bool = True, tell: Progress = lambda _:
         try:
             tell(f'{name}: periodic motion')
             orbit = find_orbit(cam_drive.drive)
-            results[name] = {'orbit': orbit_figures(cam_drive, orbit)}
+            found = motion_findings(cam_drive, orbit)
             tell(f'{name}: start-up')
-            run = start_up(cam_drive.drive, START_UP)
+            run = start_up_until_settled(cam_drive.drive, orbit)
         except (NoOrbitError, StallError) as error:
             raise type(error)(f'{name}: {error}') from error
-        results[name]['start_up'] = start_up_figures(cam_drive, orbit, run)
+        results[name] = {
+            'orbit': orbit_figures(cam_drive, orbit),
+            'start_up': start_up_figures(cam_drive, orbit, run),
+            'warnings': [*found, *start_up_findings(
+                cam_drive, orbit, run, is_settled(orbit, run))]}
         if document:
             tell(f"{name}: the document's own scheme")
             results[name]['document'] = _document(cam_drive)
@@ -157,6 +168,7 @@ def orbit_figures(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
 
     """
     low, high = orbit.speeds
+    contact = orbit.least_contact(settings.base)
     drive = settings.drive
     ratio, motor = drive.gearbox.ratio, drive.motor
     breakdown = motor.synchronous_speed * (1.0 - motor.breakdown_slip)
@@ -167,8 +179,9 @@ def orbit_figures(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
         'running_cost_pct':
             100.0 * abs(0.5 * (low + high) * ratio - settings.rated_speed) / working,
         'period_s': orbit.period, 'min_speed_rpm': low / RPM, 'max_speed_rpm': high / RPM,
-        'min_contact_force': orbit.least_contact_force(settings.base),
-        'motor_work_per_cycle': orbit.motor_work,
+        'mean_speed_rpm': TURN / orbit.period / RPM,
+        'min_contact_force': contact.value, 'min_contact_force_deg': contact.at % TURN / DEGREE,
+        'motor_work_per_cycle': orbit.motor_work, 'drawn_work_per_cycle': orbit.drawn_work,
         'peak_gearbox_torque': orbit.peak_gearbox_torque,
         **_gearbox_margins(drive.gearbox, orbit.peak_gearbox_torque, high),
     }
@@ -182,6 +195,59 @@ def _gearbox_margins(gearbox: Gearbox, torque: float, speed: float) -> dict[str,
     if gearbox.max_speed is not None:
         margins['gearbox_speed_margin_rpm'] = (gearbox.max_speed - gearbox.ratio * speed) / RPM
     return margins
+
+
+def is_settled(orbit: Orbit, run: StartUp) -> bool:
+    """
+    Tell whether a start-up has become the periodic motion.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The periodic motion.
+    run : StartUp
+        The start-up.
+
+    Returns
+    -------
+    bool
+        Whether the speed at the beginning of its last revolution is that of the periodic motion
+        to a thousandth.
+
+    """
+    begins = [stretch for stretch in run.stretches if stretch.element.start == 0.0]
+    # of the energy, so twice the share of the speed
+    return bool(begins) and abs(begins[-1].energy / orbit.start_energy - 1.0) < 2.0 * _BAND
+
+
+def start_up_until_settled(drive: CamDrive, orbit: Orbit) -> StartUp:
+    """
+    Follow a start-up until it is the periodic motion, for 3 s at least and 60 s at most.
+
+    Parameters
+    ----------
+    drive : CamDrive
+        The drive.
+    orbit : Orbit
+        Its periodic motion.
+
+    Returns
+    -------
+    StartUp
+        The start-up.
+
+    Raises
+    ------
+    StallError
+        When the motor does not start, or stalls.
+
+    """
+    duration = START_UP
+    run = start_up(drive, duration)
+    while not is_settled(orbit, run) and duration < LONGEST_START_UP:
+        duration = min(2.0 * duration, LONGEST_START_UP)
+        run = start_up(drive, duration)
+    return run
 
 
 def start_up_figures(settings: CamDriveSettings, orbit: Orbit, run: StartUp) -> dict[str, Any]:
@@ -203,21 +269,25 @@ def start_up_figures(settings: CamDriveSettings, orbit: Orbit, run: StartUp) -> 
         See README for the keys.
 
     """
-    drive = settings.drive
+    drive, contact = settings.drive, run.least_contact(settings.base)
     first = run.crossings(drive.nominal_speed)
     # settled: up for the last time through the nominal speed, or through the least speed of
     # the periodic motion where that dips below
     band = min(drive.nominal_speed, orbit.speeds[0] * (1.0 - _BAND))
-    settled = run.crossings(band)
+    through = run.crossings(band)
     return {
         'first_crossing_s': first[0] if first else None,
-        'settled_s': settled[-1] if settled else None,
-        'min_contact_force': run.least_contact_force(settings.base),
+        'settled_s': through[-1] if through and is_settled(orbit, run) else None,
+        'followed_s': run.duration,
+        'min_contact_force': contact.value, 'min_contact_force_deg': contact.at % TURN / DEGREE,
+        'start_torque': float(drive.motor_torque(np.zeros(1))[0]),
+        'static_load_peak': ShaftLoad(drive).static_peak,
     }
 
 
 def _document(settings: CamDriveSettings) -> dict[str, Any]:
-    metrics = document_metrics(settings.drive, settings.base)
+    metrics = document_metrics(
+        settings.drive, settings.base, rated_speed=settings.rated_speed)
     return {name: getattr(metrics, name) for name in (
         'steady_state_time_s', 'stability_pct', 'fluctuation_pct', 'running_cost_pct',
         'min_contact_force', 'max_pressure_angle_deg', 'max_torque_estimate')}

@@ -138,6 +138,8 @@ class CheckSummary:
         The cam discs that can be built.
     units : Mapping[str, str]
         Units of the axes in `stepping`.
+    of_drives : tuple[Problem, ...]
+        What to mind of drives that turn a cam shaft, where the machine is sound.
 
     """
 
@@ -150,12 +152,13 @@ class CheckSummary:
     stepping: Mapping[str, Mapping[str, Continuity]] = field(default_factory=dict)
     cam_discs: Mapping[str, CamDiscSettings] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    of_drives: tuple[Problem, ...] = ()
 
     @property
     def warnings(self) -> tuple[Problem, ...]:
-        """List what is to be known of axes that are sound, paths of the whole configuration."""
-        return tuple(warning.below(name) for name, axis in self.axes.items()
-                     for warning in axis.warnings)
+        """List what is to be known of what is sound, paths of the whole configuration."""
+        return (*(warning.below(name) for name, axis in self.axes.items()
+                  for warning in axis.warnings), *self.of_drives)
 
     @property
     def runs_at_set_speed(self) -> bool:
@@ -195,9 +198,11 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
     problems: tuple[Problem, ...] = ()
     margins: Mapping[str, LimitFigures] = {}
     interlocks: Mapping[str, JudgedInterlock] = {}
+    of_drives: tuple[Problem, ...] = ()
     try:
         machine = build_machine(sections)
         margins, interlocks = _margins(machine), machine.interlocks
+        of_drives = _warnings(machine)
     except ConfigurationError as error:
         problems = error.problems
     if speed_cpm is None:
@@ -217,7 +222,17 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
     discs, of_discs = check_discs(sections)
     return CheckSummary((*problems, *wrong, *of_discs), speed_cpm, axes, margins, interlocks,
                         linkages, stepping, discs,
-                        {name: str(sections[name].get('unit', 'm')) for name in stepping})
+                        {name: str(sections[name].get('unit', 'm')) for name in stepping},
+                        of_drives)
+
+
+def _warnings(machine: Machine) -> tuple[Problem, ...]:
+    """Say what to mind of the drives that turn a cam shaft, if anything."""
+    if not machine.cam_drives:
+        return ()
+    from cam_motion.io.cam_drive_findings import findings
+    return tuple(Problem(name, None, text) for name, drive in machine.cam_drives.items()
+                 for text in findings(drive))
 
 
 def _margins(machine: Machine) -> dict[str, LimitFigures]:

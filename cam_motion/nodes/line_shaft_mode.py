@@ -29,7 +29,7 @@ from cam_motion.nodes.qos import SETPOINTS
 from cam_motion.nodes.shaft_ticker import ShaftTicker
 from cam_motion.nodes.wire import JointStateCodec
 from cam_motion.runtime.ticks import NANOSECONDS
-from cam_motion.units import RPM, TURN
+from cam_motion.units import DEGREE, RPM, TURN
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
@@ -188,6 +188,10 @@ class LineShaftMode(DriveMode):
         self._now_ns = time_ns
         self._last = last = self._live.state(time_ns)
         if self._live.stops != self._stops:
+            if not self._stalls:  # said once, not each time that it swings back
+                self.node.get_logger().warning(
+                    f'the motor does not get the load round: it stalls at '
+                    f'{last.phi % TURN / DEGREE:.1f} deg')
             self._stops, self._stopped_at = self._live.stops, last.phi
         self._peak_torque = max(self._peak_torque, abs(last.motor_torque))
         self._ticker.publish(time_ns, last.phi, last.omega, last.alpha)

@@ -263,3 +263,26 @@ def test_the_joints_of_a_refused_cam_have_the_unit_of_the_file(cam_motion, tmp_p
     file.write_text(STEPS.replace('simple_harmonic', 'constant_velocity'))
     done = cam_motion('check', file)
     assert done.returncode == 2 and 'm/rad' in done.stdout and 'unit/' not in done.stdout
+
+
+@pytest.mark.parametrize(('path', 'value', 'said'), [
+    ('motor.breakdown_torque', 20.0, 'at rest it gives 59.2 N m at the cam shaft, and the static'),
+    ('motor.breakdown_torque', 1.0, 'no periodic motion near 400 rpm'),
+    ('nominal_rpm', 4000.0, '-89.7 % off the nominal 4000 rpm'),
+])
+def test_a_cam_drive_that_cannot_do_its_work_is_warned_of(
+        cam_motion, read_json, tmp_path, machine_file, path, value, said):
+    data = yaml.safe_load(machine_file.with_name('cam_press_drive.yaml').read_text())
+    at = data['press_drive']['ros__parameters']
+    *above, last = path.split('.')
+    for key in above:
+        at = at[key]
+    at[last] = value
+    file = tmp_path / 'press.yaml'
+    file.write_text(yaml.safe_dump(data))
+    found = read_json(cam_motion('check', file, '--json').stdout)
+    assert any(said in each['rule'] for each in found['warnings']
+               if each['path'] == 'press_drive')
+    done = cam_motion('check', file)
+    assert (done.returncode, done.stderr) == (0, '')
+    assert 'warning: press_drive: ' in done.stdout and said in ' '.join(done.stdout.split())

@@ -88,6 +88,17 @@ def test_a_linkage_is_shown_with_its_state_and_on_a_plain_line_unless_it_follows
     assert 'umbrella' not in following
 
 
+def test_a_drive_that_turns_the_shaft_and_stalls_is_shown_to():
+    machine = load_machine(CONFIGS / 'cam_press_drive.yaml')
+    drives = {'press_drive': (4.6, 0.0)}
+    for state, shown in (('stalled', True), ('running', False)):
+        seen = Snapshot(time=1.0, drives=drives, states={'press_drive': state})
+        assert (state in plain_line(machine, seen)) == shown
+        console = Console(width=100, file=StringIO())
+        console.print(render(machine, seen, 'press'))
+        assert state in console.file.getvalue()
+
+
 def test_the_table_fits_a_narrow_terminal():
     console = Console(width=80, record=True, file=open('/dev/null', 'w', encoding='utf-8'))
     with console.file:

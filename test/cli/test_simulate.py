@@ -39,18 +39,26 @@ def test_press_drive_by_its_motion_and_by_the_documents_definitions(cam_motion, 
     done = cam_motion('simulate', PRESS, '--json')
     assert done.returncode == 0, done.stderr
     data = read_json(done.stdout)
-    assert set(data) == {'orbit', 'start_up', 'document', 'drives'}
+    assert set(data) == {'orbit', 'start_up', 'document', 'warnings', 'drives'}
     assert data['drives'] == {'press_drive': {
-        key: data[key] for key in ('orbit', 'start_up', 'document')}}
+        key: value for key, value in data.items() if key != 'drives'}}
+    assert data['warnings'] == []
     # the periodic motion, by two solvers that agree to 1e-8
+    # where the force is least is a flat place
+    assert data['orbit'].pop('min_contact_force_deg') == pytest.approx(322.872, abs=0.01)
+    assert data['start_up'].pop('min_contact_force_deg') == pytest.approx(340.344, abs=0.01)
     assert data['orbit'] == pytest.approx({
         'fluctuation_pct': 5.76756715, 'stability_pct': 84.06723792,
         'running_cost_pct': 9.45952673, 'period_s': 0.14506626, 'min_speed_rpm': 401.04650223,
         'max_speed_rpm': 424.11677083, 'min_contact_force': 774.14855577,
-        'motor_work_per_cycle': 76.38384606, 'peak_gearbox_torque': 68.38390280}, rel=1e-8)
+        'mean_speed_rpm': 60.0 / data['orbit']['period_s'],
+        'motor_work_per_cycle': 76.38384606, 'drawn_work_per_cycle': 79.09396822,
+        'peak_gearbox_torque': 68.38390280}, rel=1e-8)
     assert data['start_up'] == pytest.approx({
         'first_crossing_s': 0.65131034, 'settled_s': 0.74384388,
-        'min_contact_force': 514.194993}, rel=1e-7)
+        'min_contact_force': 514.194993,
+        'followed_s': 3.00054909, 'start_torque': 80.71275, 'static_load_peak': 72.42114},
+        rel=1e-6)
     # printed in document 004, to its digits
     printed = {'steady_state_time_s': 0.6513, 'stability_pct': 84.0363,
                'fluctuation_pct': 5.8038, 'running_cost_pct': 9.4831,
@@ -153,6 +161,45 @@ def test_a_motor_too_weak_is_refused_with_its_figures(cam_motion, broken, change
     assert len(done.stderr.strip().splitlines()) == 1
     assert all(text in done.stderr for text in said), done.stderr
     assert 'Traceback' not in done.stderr
+
+
+@pytest.mark.parametrize(('changes', 'said'), [
+    ({'spring.stiffness': 3000.0}, 'lifts off its cam: the contact force falls to -86.58 N at 15'),
+    ({'motor.breakdown_torque': 20.0},
+     'at rest it gives 59.2 N m at the cam shaft, and the static load takes up to 72.42 N m'),
+    ({'nominal_rpm': 4000.0}, 'turns at 413.6 rpm on average, -89.7 % off the nominal 4000 rpm'),
+    ({'gearbox.ratio': 1e6}, 'the start-up is not over within'),
+])
+def test_what_a_user_must_mind_is_said_with_figures(cam_motion, read_json, broken, changes, said):
+    file = broken(changes)
+    data = read_json(cam_motion('simulate', file, '--no-document', '--json').stdout)
+    assert [text for text in data['warnings'] if said in text]
+    done = cam_motion('simulate', file, '--no-document')
+    assert done.returncode == 0
+    assert 'warning: ' in done.stdout and said in ' '.join(done.stdout.split())
+
+
+def test_a_start_up_is_followed_until_it_is_over(cam_motion, read_json, broken):
+    data = read_json(cam_motion(
+        'simulate', broken({'flywheel': 0.4}), '--no-document', '--json').stdout)
+    start = data['start_up']
+    assert 3.0 < start['first_crossing_s'] <= start['settled_s'] < start['followed_s'] < 60.0
+    assert data['warnings'] == []
+    never = read_json(cam_motion(
+        'simulate', broken({'gearbox.ratio': 1e6}), '--no-document', '--json').stdout)
+    assert never['start_up']['settled_s'] is None and never['start_up']['followed_s'] >= 60.0
+
+
+def test_a_stall_says_the_torques_that_decide(cam_motion, broken):
+    done = cam_motion('simulate', broken({'motor.breakdown_torque': 5.0}), '--no-document')
+    assert done.returncode == 1
+    assert 'gives 14.8 N m' in done.stderr and 'exceed the 72.42 N m' in done.stderr
+
+
+def test_the_document_s_running_cost_counts_from_the_rated_speed(cam_motion, read_json, broken):
+    file = broken({'gearbox.ratio': 3.79684375, 'flywheel': 0.075})
+    data = read_json(cam_motion('simulate', file, '--json').stdout)
+    assert data['document']['running_cost_pct'] == pytest.approx(10.0013, abs=5e-5)
 
 
 def test_the_picture_of_a_cam_that_does_not_return_is_refused(cam_motion, broken, tmp_path):

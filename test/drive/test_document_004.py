@@ -124,7 +124,7 @@ def test_the_motor_starts_with_the_torque_of_the_printed_curve_at_slip_one(docum
 
 def test_the_document_reports_the_start_up_where_the_orbit_reports_the_motion(
         document_run, orbit_of, base):
-    assert document_run.min_contact_force < 0.7 * orbit_of(0.06).least_contact_force(base)
+    assert document_run.min_contact_force < 0.7 * orbit_of(0.06).least_contact(base).value
 
 
 def plain(q, w, flywheel):
@@ -162,7 +162,7 @@ def test_a_plain_run_from_rest_settles_into_the_same_motion(orbit_of, base):
     assert np.min(omega[last]) == pytest.approx(orbit.speeds[0], rel=CRUDE)
     assert np.max(omega[last]) == pytest.approx(orbit.speeds[1], rel=CRUDE)
     least = min(plain(x, w, 0.06)[1] for x, w in zip(q[last], omega[last]))
-    assert least == pytest.approx(orbit.least_contact_force(base), rel=NEAR_A_JUMP)
+    assert least == pytest.approx(orbit.least_contact(base).value, rel=NEAR_A_JUMP)
 
 
 def test_friction_in_the_load_costs_speed(press, press_parts, base):

@@ -54,7 +54,7 @@ def figures(drive, orbit, base):
         'min_speed_rpm': orbit.speeds[0] / RPM,
         'max_speed_rpm': orbit.speeds[1] / RPM,
         'period_s': orbit.period,
-        'min_contact_force': orbit.least_contact_force(base),
+        'min_contact_force': orbit.least_contact(base).value,
     }
 
 

@@ -96,7 +96,7 @@ def orbit_figure(settings: CamDriveSettings, orbit: Orbit) -> Figure:
         force = np.concatenate([
             stretch.contact_force(stretch.dense(121), settings.base)
             for stretch in orbit.stretches])
-        _draw_contact(rows[2], angles, force, orbit.least_contact_force(settings.base))
+        _draw_contact(rows[2], angles, force, orbit.least_contact(settings.base).value)
         for row in rows:
             row.margins(y=0.12)
             finish_angle_axis(row, drive, last=row is rows[-1])
