@@ -139,4 +139,3 @@ class SpeedBlend(Blend):
         values[2] += w1 * d1 + w * d2
         values[3] += w2 * d1 + 2.0 * w1 * d2 + w * d3
         return values
-
