@@ -104,7 +104,9 @@ CAM_AXIS = (
                   'By how much the axis runs ahead of the shaft, to make up for what its drive '
                   'lags behind.', 's', least=-1.0, most=1.0),
     ParameterSpec('master_timeout', 'double', 0.5,
-                  'After this long without a shaft point the axis stops on its curve.', 's',
+                  'After this long without a shaft point the axis stops on its curve; after '
+                  'twice as long without a setpoint of another axis that it follows, which by '
+                  'then has begun to bring itself to rest.', 's',
                   above=0.0, most=60.0),
     ParameterSpec('stop_acceleration', 'double', 150.0,
                   'Deceleration of the shaft by which the axis stops on its own curve when it '

@@ -20,6 +20,10 @@ SETPOINTS = QoSProfile(
     durability=DurabilityPolicy.VOLATILE)
 """Streams of setpoints: reliable, so that best-effort readers are served too."""
 
+BURST = 5
+"""Points that come late are given so many at a time at most: with more, the last would push the
+first out of the history of their stream before a busy reader has taken it."""
+
 LATCHED = QoSProfile(
     history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL)

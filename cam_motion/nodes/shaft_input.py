@@ -10,9 +10,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import islice
 from time import monotonic
 
 from cam_motion.nodes.managed_node import ManagedNode
+from cam_motion.nodes.qos import BURST
 from cam_motion.nodes.wire import unpack_point
 from cam_motion.runtime.coasting import Coasting, stop_of_axis
 from cam_motion.runtime.follower_settings import FollowerState
@@ -23,6 +25,7 @@ from cam_motion.runtime.watchdog import ShaftWatch
 from rclpy.timer import Timer
 
 _LOOKS = 4  # for a silent shaft, within its timeout
+_PATIENCE = 2.0  # times as long with another axis: it may be about to bring itself to rest
 
 
 class ShaftInput:
@@ -68,7 +71,8 @@ class ShaftInput:
         self._limits = limits
         self._follow = follow
         self._change = change
-        self.watch = ShaftWatch(timeout, AxisPlausibility() if of_axis else None)
+        self.watch = (ShaftWatch(_PATIENCE * timeout, AxisPlausibility()) if of_axis
+                      else ShaftWatch(timeout))
         self.answered = self.refused = 0
         self.worst = 0.0
         self._coasting: Coasting | None = None
@@ -193,7 +197,7 @@ class ShaftInput:
         coasting = self._coasting
         if coasting is None:
             return
-        for point in coasting.due(self._now()):
+        for point in islice(coasting.due(self._now()), BURST):
             self._follow(point)
         if coasting.over:
             self._node.destroy_timer(self._timers.pop())

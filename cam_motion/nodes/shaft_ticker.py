@@ -15,7 +15,7 @@ from typing import Any
 from cam_motion.io.axis_parameters import SHAFT
 from cam_motion.io.tracks import TrackSettings
 from cam_motion.nodes.managed_node import ManagedNode
-from cam_motion.nodes.qos import SETPOINTS
+from cam_motion.nodes.qos import BURST, SETPOINTS
 from cam_motion.nodes.track_output import TrackOutput
 from cam_motion.nodes.wire import JointStateCodec, pack_point
 from cam_motion.runtime.point import Point
@@ -26,9 +26,6 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 _SIM_TIME_CATCH_UP = 1.0  # /clock may come in coarse steps: its ticks are all carried out [s]
-# Late ticks at a time: with more, the last of a burst would push the first out of the history of
-# the streams (10) before a busy reader has taken it.
-_BURST = 5
 
 Listener = Callable[[Point], None]
 
@@ -81,7 +78,7 @@ class ShaftTicker:
         catch_up = values['max_catch_up']
         self.schedule = (
             TickSchedule(values['rate_hz'], max(catch_up, _SIM_TIME_CATCH_UP)) if node.sim_time
-            else TickSchedule(values['rate_hz'], catch_up, _BURST))
+            else TickSchedule(values['rate_hz'], catch_up, BURST))
         self.count = 0
         self.last_ns = 0
         self.given_up = 0

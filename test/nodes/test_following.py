@@ -294,6 +294,34 @@ def test_an_axis_follows_another_axis(world):
     assert setpoints[-1][:3] == pytest.approx(exact, abs=1e-12)
 
 
+def test_the_shaft_is_lost_and_a_cascade_comes_to_rest_together(world):
+    """The follower waits for its leader to stop, and stays on the curve over it all the way."""
+    nodes = {}
+    for name, given in (('leader', PRESS), ('cam_axis', {**PRESS, 'follows': 'leader',
+                                                         'ratio': 50.0})):
+        nodes[name] = node = world.make(CamAxis, {**given, 'master_timeout': 0.5}, name=name)
+        node.trigger_configure()
+        node.trigger_activate()
+    led, setpoints = world.points('leader/setpoint'), world.points('cam_axis/setpoint')
+    turner = Turner(world, setpoints)
+    assert world.spin_until(lambda: node._setpoints.get_subscription_count() == 1)
+    assert world.spin_until(lambda: world.probe.count_subscribers('leader/setpoint') == 2)
+    turner.shaft.run(0.0)
+    turner.turn(250)
+    assert turner.shaft.state(turner.time_ns * 1e-9).omega > 1.0
+    assert world.spin_until(lambda: nodes['leader'].state_text == 'held')
+    assert world.spin_until(lambda: led[-1].velocity == led[-1].acceleration == 0.0 and (
+        setpoints[-1].time == led[-1].time))
+    cam = build_axis('axis', PRESS).profile
+    leads = {point.time: point for point in led}
+    for point in setpoints:
+        place = 50.0 * leads[point.time].position
+        assert point.position == pytest.approx(cam.sample(place)[0], abs=1e-12)
+    assert setpoints[-1][1:3] == (0.0, 0.0)
+    check_smooth(led)
+    assert all(b.time - a.time == pytest.approx(PERIOD_NS * 1e-9) for a, b in pairwise(led))
+
+
 def test_the_dead_time_is_made_up_for(world, axis):
     node, turner, setpoints = axis({**PRESS, 'dead_time': 0.010})
     turner.shaft.run(0.0)
