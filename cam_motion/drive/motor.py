@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 import math
 from typing import Any, Protocol
@@ -236,6 +237,50 @@ class KlossMotor:
         ratio = breakdown_torque / rated_torque
         slip = (1.0 - rated_speed / synchronous_speed) * (ratio + math.sqrt(ratio * ratio - 1.0))
         return cls(synchronous_speed, breakdown_torque, slip, inertia)
+
+    def started_with(self, torque: float, at: float | None = None) -> InductionMotor:
+        """
+        Bend the curve to a known torque at rest, which it gives too low for most motors.
+
+        Parameters
+        ----------
+        torque : float
+            Torque at rest [N m]; below the breakdown torque.
+        at : float, optional
+            Speed at which the torque stays what it is, as the rated one [rad/s]; left out it is
+            that of breakdown.
+
+        Returns
+        -------
+        InductionMotor
+            A motor with the same breakdown, that torque at rest, and the same torque at ``at``.
+
+        Raises
+        ------
+        ConfigurationError
+            When there is no such curve.
+
+        Notes
+        -----
+        This curve is that of `InductionMotor` with a = 1 / (2 s_b) and b = 0. There the torque at
+        rest makes a - b = (T_b / T_0 - 1) / (1 - s_b)², and what shall stay at the slip s makes
+        a - b s³ = 1 / (2 s_b).
+
+        """
+        rule = f'must lie below the breakdown torque of {self.breakdown_torque:g} N m'
+        if 0.0 < torque < self.breakdown_torque:
+            rule = (f'is out of the reach of a curve with breakdown at the slip '
+                    f'{self.breakdown_slip:.4g}, which gives {float(self.torque(0.0)):.4g} N m')
+            if self.breakdown_slip < 1.0:
+                kept = self.breakdown_slip if at is None else 1.0 - at / self.synchronous_speed
+                at_rest = (self.breakdown_torque / torque - 1.0) / (1.0 - self.breakdown_slip) ** 2
+                b = (0.5 / self.breakdown_slip - at_rest) / (1.0 - kept ** 3)
+                with suppress(ConfigurationError):  # it says no more than that there is none
+                    return InductionMotor(self.synchronous_speed, self.breakdown_torque,
+                                          self.breakdown_slip, at_rest + b, b, self.inertia)
+        raise ConfigurationError([Problem(
+            'starting_torque', torque, rule,
+            'give breakdown_slip, a and b of a curve that the maker draws')])
 
     def torque(self, speed: Any) -> Any:
         """

@@ -47,8 +47,6 @@ class MotorChoice:
         Rated torque [N m].
     rated_speed : float
         Rated speed [rad/s].
-    starting_torque : float
-        Torque at rest [N m].
     source : str
         Where the figures are from.
 
@@ -59,8 +57,12 @@ class MotorChoice:
     rated_power: float
     rated_torque: float
     rated_speed: float
-    starting_torque: float
     source: str = ''
+
+    @property
+    def starting_torque(self) -> float:
+        """Give the torque at rest, that of the curve [N m]."""
+        return float(self.motor.torque(0.0))
 
 
 class Wishes(NamedTuple):

@@ -19,6 +19,7 @@ from cam_motion.drive.motor import InductionMotor, KlossMotor
 from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.axis import CoupledAxis
 from cam_motion.io.cam_drive_parameters import CAM_DRIVE, part_names
+from cam_motion.io.induction_motor import FIGURES, induction_motor
 from cam_motion.io.load_config import lever_problems, take_parts
 from cam_motion.io.parameters import check_values
 from cam_motion.io.tracks import take_tracks, TrackSettings
@@ -157,19 +158,7 @@ def cam_on_shaft(axis: CoupledAxis, why: str = 'the cam of this drive sits on it
 
 
 def _motor(values: Mapping[str, Any]) -> InductionMotor | KlossMotor:
-    synchronous = values['motor.synchronous_rpm'] * RPM
-    torque, slip = values['motor.breakdown_torque'], values['motor.breakdown_slip']
-    a, b, inertia = values['motor.a'], values['motor.b'], values['motor.inertia']
-    if slip is not None and a is not None and b is not None:
-        return InductionMotor(synchronous, torque, slip, a, b, inertia)
-    if slip is not None:
-        return KlossMotor(synchronous, torque, slip, inertia)
-    rated, rated_torque = values['motor.rated_rpm'], values['motor.rated_torque']
-    if rated is None or rated_torque is None:
-        raise ConfigurationError([Problem(
-            'breakdown_slip', None, 'a motor needs its breakdown slip, or rated_rpm and '
-            'rated_torque', 'take them from the rating plate')])
-    return KlossMotor.from_rated(synchronous, rated * RPM, rated_torque, torque, inertia)
+    return induction_motor({name: values[f'motor.{name}'] for name in FIGURES})
 
 
 def _gearbox(values: Mapping[str, Any]) -> Gearbox:

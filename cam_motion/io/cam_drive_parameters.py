@@ -44,6 +44,8 @@ CAM_DRIVE = (
     _number('motor.rated_torque', 'Rated torque; with rated_rpm it stands for the breakdown slip.',
             'N m', None, above=0.0),
     _number('motor.breakdown_torque', 'Breakdown torque.', 'N m', above=0.0),
+    _number('motor.starting_torque', "Torque at rest, to which Kloss' curve is bent; left out it "
+            'is that of the curve.', 'N m', None, above=0.0),
     _number('motor.breakdown_slip', 'Slip at breakdown.', '', None, above=0.0, most=1.0),
     _number('motor.a', "Constant of document 004's torque curve; without a and b, Kloss' curve.",
             '', None, above=0.0),

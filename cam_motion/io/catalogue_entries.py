@@ -14,12 +14,12 @@ import math
 from typing import Any
 
 from cam_motion.drive.gearbox import Gearbox
-from cam_motion.drive.motor import InductionMotor, KlossMotor
 from cam_motion.drive.servo_motor import ServoMotor, TorqueLimit
 from cam_motion.drive.sizing import GearboxChoice
 from cam_motion.drive.sizing_forward import MotorChoice
 from cam_motion.drive.sizing_inverse import ServoChoice
 from cam_motion.errors import ConfigurationError, Problem
+from cam_motion.io.induction_motor import induction_motor
 from cam_motion.io.parameters import check_values, ParameterSpec, REQUIRED
 from cam_motion.units import RPM
 
@@ -53,8 +53,8 @@ ENTRIES: dict[str, tuple[ParameterSpec, ...]] = {
         *_COMMON,
         _number('synchronous_rpm', 'Speed at zero slip.', 'rpm'),
         _number('breakdown_torque', 'Largest torque.', 'N m'),
-        _number('starting_torque', 'Torque at rest; that of the curve where left out.', 'N m',
-                None),
+        _number('starting_torque', 'Torque at rest, to which the curve is bent; that of the curve '
+                'where left out.', 'N m', None),
         _number('breakdown_slip', 'Slip at breakdown.', '', None, most=1.0),
         _number('a', "Constant of document 004's torque curve.", '', None),
         _number('b', "Constant of document 004's torque curve.", '', None, above=None),
@@ -157,25 +157,8 @@ def _power(values: Values) -> float:
 
 
 def _motor(name: str, values: Values) -> MotorChoice:
-    synchronous, rated = values['synchronous_rpm'] * RPM, values['rated_rpm'] * RPM
-    torque, slip, inertia = (
-        values['breakdown_torque'], values['breakdown_slip'], values['inertia'])
-    a, b = values['a'], values['b']
-    motor: InductionMotor | KlossMotor
-    if (a is None) != (b is None) or (a is not None and slip is None):
-        raise ConfigurationError([Problem(
-            'a', a, 'a, b and breakdown_slip make the curve of document 004 together',
-            'give all three, or leave a and b out')])
-    if a is not None:
-        motor = InductionMotor(synchronous, torque, slip, a, b, inertia)
-    elif slip is not None:
-        motor = KlossMotor(synchronous, torque, slip, inertia)
-    else:
-        motor = KlossMotor.from_rated(synchronous, rated, values['rated_torque'], torque, inertia)
-    starting = values['starting_torque']
-    return MotorChoice(name, motor, _power(values), values['rated_torque'], rated,
-                       float(motor.torque(0.0)) if starting is None else starting,
-                       values['source'])
+    return MotorChoice(name, induction_motor(values), _power(values), values['rated_torque'],
+                       values['rated_rpm'] * RPM, values['source'])
 
 
 def _servo(name: str, values: Values) -> ServoChoice:

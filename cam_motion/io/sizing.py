@@ -208,8 +208,7 @@ def _own_motor(settings: CamDriveSettings) -> Iterator[MotorChoice]:
     motor, speed = settings.drive.motor, settings.rated_speed
     torque = settings.values['motor.rated_torque'] or float(motor.torque(speed))
     if torque > 0.0 and isinstance(motor, InductionMotor | KlossMotor):
-        yield MotorChoice(CONFIGURED, motor, torque * speed, torque, speed,
-                          float(motor.torque(0.0)))
+        yield MotorChoice(CONFIGURED, motor, torque * speed, torque, speed)
 
 
 def _gearboxes(catalogue: Catalogue, own: Gearbox, ratios: Sequence[float],

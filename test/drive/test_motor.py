@@ -162,3 +162,31 @@ def test_a_rated_point_off_the_curve_is_refused(rated_rpm, torque, path, rule):
 def test_a_constant_too_small_to_matter_is_no_trouble(b):
     tiny, plain = (InductionMotor(157.08, 27.27, 0.315, 1.587, each, 0.0028) for each in (b, 0.0))
     assert tiny.torque(150.0) == plain.torque(150.0)
+
+
+@given(st.floats(1.5, 5.0), st.floats(0.01, 0.08), st.floats(0.5, 0.99))
+def test_a_curve_bent_to_the_torque_at_rest_keeps_breakdown_and_the_rated_point(
+        ratio, slip, share):
+    rated = (1.0 - slip) * 1500.0 * RPM
+    kloss = KlossMotor.from_rated(1500.0 * RPM, rated, 5.0, 5.0 * ratio, 0.0026)
+    # a motor gives more at rest than Kloss' curve; far below it the bent one would have a pole
+    assume(share * 5.0 * ratio > 0.9 * float(kloss.torque(0.0)) and kloss.breakdown_slip < 0.6)
+    bent = kloss.started_with(share * 5.0 * ratio, rated)
+    assert float(bent.torque(0.0)) == pytest.approx(share * 5.0 * ratio, rel=1e-9)
+    assert float(bent.torque(rated)) == pytest.approx(5.0, rel=1e-9)
+    speeds = np.linspace(0.0, 1500.0 * RPM, 4001)
+    torques = bent.torque(speeds)
+    breakdown = (1.0 - kloss.breakdown_slip) * 1500.0 * RPM
+    assert float(bent.torque(breakdown)) == pytest.approx(5.0 * ratio, rel=1e-12)
+    assert np.max(torques) <= 5.0 * ratio * (1.0 + 1e-12)
+
+
+def test_a_torque_at_rest_out_of_reach_is_refused():
+    kloss = KlossMotor(1500.0 * RPM, 17.0, 0.25, 0.0026)
+    for torque, said in ((17.0, 'below the breakdown torque'), (-1.0, 'below the breakdown'),
+                         (0.3, 'out of the reach')):
+        with pytest.raises(ConfigurationError, match=said):
+            kloss.started_with(torque)
+    # what the curve gives anyway bends nothing
+    same = kloss.started_with(float(kloss.torque(0.0)))
+    assert abs(same.b) < 1e-12 and same.a == pytest.approx(2.0)

@@ -65,8 +65,7 @@ def box(ratio, efficiency=1.0, inertia=0.0, **limits):
 @pytest.fixture(scope='module')
 def choice(press_motor):
     """Make document 004's motor as a choice."""
-    return MotorChoice('NM 90L-4', press_motor, 1500.0, 10.1, 1421.0 * RPM,
-                       float(press_motor.torque(0.0)))
+    return MotorChoice('NM 90L-4', press_motor, 1500.0, 10.1, 1421.0 * RPM)
 
 
 def verdict_is_true(check):
@@ -238,9 +237,8 @@ def press_candidates(press, choice):
     """Try three motors, four ratios and five flywheels for the press."""
     drive = press()
     weak = replace(choice, name='weak', motor=KlossMotor(1500.0 * RPM, 12.0, 0.2, 0.002),
-                   rated_torque=4.0, starting_torque=12.0, rated_power=600.0)
-    feeble = replace(weak, name='feeble', motor=KlossMotor(1500.0 * RPM, 2.0, 0.2, 0.001),
-                     starting_torque=2.0)
+                   rated_torque=4.0, rated_power=600.0)
+    feeble = replace(weak, name='feeble', motor=KlossMotor(1500.0 * RPM, 2.0, 0.2, 0.001))
     boxes = [GearboxChoice(f'{r:g}', Gearbox(r, 0.9, 0.0038), peak_torque=limit)
              for r, limit in ((3.0, math.inf), (3.5525, math.inf), (3.7, 60.0), (4.2, 80.0))]
     pairs = [(motor, one) for motor in (choice, weak, feeble) for one in boxes]

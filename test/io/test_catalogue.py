@@ -95,7 +95,8 @@ def test_data_sheets_that_print_ratios_are_taken_times_the_rated_torque():
     assert big.starting_torque == pytest.approx(2.7 * 143.41)
     assert small.motor.breakdown_torque == pytest.approx(3.4 * 5.0)
     assert small.starting_torque == pytest.approx(2.8 * 5.0)
-    for one in (big, small):  # Kloss' curve goes through the rated point
+    for one in (big, small):  # the curve goes through the rated point, and that at rest
+        assert float(one.motor.torque(0.0)) == one.starting_torque
         assert float(one.motor.torque(one.rated_speed)) == pytest.approx(one.rated_torque)
         # what a maker rounds: rated power is rated torque times rated speed
         assert one.rated_torque * one.rated_speed == pytest.approx(one.rated_power, rel=0.01)
@@ -174,7 +175,12 @@ def test_several_files_make_one_catalogue_but_no_name_stands_twice(write):
     ({'induction_motors.M1.breakdown_torque': None}, 'induction_motors.M1.breakdown_torque', ''),
     ({'induction_motors.M1.breakdown_torque': 9.0}, 'induction_motors.M1.rated_torque',
      'below the breakdown'),
-    ({'induction_motors.M1.rated_rpm': 1500}, 'induction_motors.M1.rated_speed', 'synchronous'),
+    ({'induction_motors.M1.rated_rpm': 1500}, 'induction_motors.M1.rated_rpm', 'synchronous'),
+    ({'induction_motors.M1.starting_torque': 29.0}, 'induction_motors.M1.starting_torque',
+     'below the breakdown torque'),
+    ({'induction_motors.M1.starting_torque': 25.0, 'induction_motors.M1.breakdown_slip': 0.2,
+      'induction_motors.M1.a': 2.5, 'induction_motors.M1.b': 1.0},
+     'induction_motors.M1.starting_torque', 'give the torque at rest too'),
     ({'induction_motors.M1.a': 2.5}, 'induction_motors.M1.a', 'all three'),
     ({'gearboxes.G1.inertia': [0.1]}, 'gearboxes.G1.inertia', 'one per ratio'),
     ({'gearboxes.G1.ratios': []}, 'gearboxes.G1.ratios', 'at least one'),

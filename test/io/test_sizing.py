@@ -101,3 +101,18 @@ def test_an_own_motor_without_rated_figures_counts_by_its_curve_at_nominal_speed
 def test_the_own_gearbox_is_as_configured_with_its_own_ratio_only(press, motors):
     names = {one.ratio: one.gearbox for one in sized(press(), motors)}
     assert names == {3.5525: CONFIGURED, 3.8: OTHER_RATIO}
+
+
+def test_a_motor_of_the_catalogue_starts_as_one_with_the_same_figures_in_the_file(press, motors):
+    slow = {'nominal_rpm': 220.0}
+    options = FEW._replace(ratios=(7.0,))
+    [found] = [one for one in sized(press(slow), motors, options) if one.motor == 'MTF3 80M-4']
+    figures = {'motor.rated_rpm': 1445.0, 'motor.rated_torque': 5.0, 'motor.a': None,
+               'motor.breakdown_torque': 17.0, 'motor.starting_torque': 14.0, 'motor.b': None,
+               'motor.breakdown_slip': None, 'motor.inertia': 0.00261, 'gearbox.ratio': 7.0}
+    simulated = simulate(press({**slow, **figures}), document=False)['press_drive']
+    assert found.figures['start_torque'] == pytest.approx(14.0 * 7.0 * 0.9)
+    assert simulated['start_up']['start_torque'] == pytest.approx(14.0 * 7.0 * 0.9)
+    assert found.figures['static_load_peak'] == simulated['start_up']['static_load_peak']
+    for name in ('fluctuation_pct', 'stability_pct', 'motor_work_per_cycle'):
+        assert found.figures[name] == pytest.approx(simulated['orbit'][name], rel=1e-5), name
