@@ -33,14 +33,17 @@ class LimitFigures(NamedTuple):
     What the exact motion of a cycle leaves of a motor's limits; negative where it breaks one.
 
     The least distance of the torque from the peak torque at the speed of the moment [N m], that
-    of the RMS torque from the continuous torque at the mean speed [N m], that of the largest
-    speed from the motor's own [rad/s], and that mean speed [rad/s].
+    of the RMS torque from the continuous torque at the RMS speed [N m], that of the largest
+    speed from the motor's own [rad/s], the mean and that RMS speed [rad/s]. What a motor loses
+    grows with torque squared and about with speed squared: the mean of both is what warms it, and
+    what the continuous torque at a constant speed stands for.
     """
 
     peak_torque_margin: float
     rms_torque_margin: float
     speed_margin: float
     mean_speed: float
+    rms_speed: float
 
 
 def limit_figures(drive: FollowerDrive, motor: ServoMotor, profile: CamProfile, omega: float,
@@ -69,11 +72,12 @@ def limit_figures(drive: FollowerDrive, motor: ServoMotor, profile: CamProfile, 
     dense, inner = drive.follow_all(*nodes.dense), drive.follow_all(*nodes.inner)
     allowed = motor.peak_torque(dense.motor_velocity)
     mean = float(nodes.weights @ np.abs(inner.motor_velocity)) / nodes.period
-    rms = float(np.sqrt(nodes.weights @ inner.motor_torque ** 2 / nodes.period))
+    rms, rms_speed = (float(np.sqrt(nodes.weights @ values ** 2 / nodes.period))
+                      for values in (inner.motor_torque, inner.motor_velocity))
     return LimitFigures(
         float(np.min(allowed - np.abs(dense.motor_torque))),
-        float(motor.continuous_torque(mean)) - rms,
-        motor.max_speed - float(np.max(np.abs(dense.motor_velocity))), mean)
+        float(motor.continuous_torque(rms_speed)) - rms,
+        motor.max_speed - float(np.max(np.abs(dense.motor_velocity))), mean, rms_speed)
 
 
 class ServoCycle(NamedTuple):

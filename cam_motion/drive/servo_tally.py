@@ -57,7 +57,7 @@ class ServoTally:
     regenerated_energy: float = 0.0
     _weight: float = field(default=0.0, repr=False)
     _square: float = field(default=0.0, repr=False)
-    _speed: float = field(default=0.0, repr=False)
+    _speed_square: float = field(default=0.0, repr=False)
 
     def note_torque(self, torque: float, newly_saturated: bool) -> None:
         """
@@ -112,7 +112,7 @@ class ServoTally:
         fade = self.thermal_time / (self.thermal_time + time)
         self._weight = self._weight * fade + time
         self._square = self._square * fade + square
-        self._speed = self._speed * fade + abs(move.before) + abs(move.after)
+        self._speed_square = self._speed_square * fade + move.velocity * move.velocity * time
 
     @property
     def rms_torque(self) -> float:
@@ -131,8 +131,8 @@ class ServoTally:
 
     @property
     def running_speed(self) -> float:
-        """Mean magnitude of the speed, the past fading by the time constant [rad/s]."""
-        return self._speed / self._weight if self._weight else 0.0
+        """Root mean square of the speed, the past fading by the time constant [rad/s]."""
+        return math.sqrt(self._speed_square / self._weight) if self._weight else 0.0
 
     @property
     def thermal_load(self) -> float:

@@ -106,6 +106,7 @@ def margins_as_data(margins: LimitFigures) -> dict[str, float]:
         'rms_torque_margin': margins.rms_torque_margin,
         'speed_margin_rpm': margins.speed_margin / RPM,
         'mean_speed_rpm': margins.mean_speed / RPM,
+        'rms_speed_rpm': margins.rms_speed / RPM,
     }
 
 

@@ -12,6 +12,7 @@ from math import inf, nan
 
 from cam_motion.drive.inverse import FollowerDrive
 from cam_motion.drive.servo_axis import ServoAxis
+from cam_motion.drive.servo_cycle import limit_figures
 from cam_motion.drive.servo_loop import ServoLoop
 from cam_motion.drive.servo_motor import ServoMotor, TorqueLimit
 from cam_motion.drive.set_motion import Setpoint
@@ -244,13 +245,14 @@ def test_braking_feeds_energy_back():
     assert axis.tally.motor_work == pytest.approx(0.0, abs=1e-4 * kinetic)
 
 
-def test_thermal_load_compares_rms_and_continuous_torque_at_mean_speed():
+def test_thermal_load_compares_rms_and_continuous_torque_at_rms_speed():
     axis = axis_of()
     drive_through(axis, setpoints(FEED, 60.0, 500, 3))
     tally = axis.tally
     # over a time short against the time constant the running means are plain means
     assert tally.running_rms_torque == pytest.approx(tally.rms_torque, rel=0.02)
-    assert tally.running_speed == pytest.approx(0.3 / 0.134 * 9.0, rel=0.02)  # one lift a second
+    limits = limit_figures(FEEDING_GROUP, MOTOR, FEED, 60.0 * RPM)
+    assert tally.running_speed == pytest.approx(limits.rms_speed, rel=0.02)
     assert tally.thermal_load == pytest.approx(tally.running_rms_torque / 15.8, rel=1e-9)
 
 

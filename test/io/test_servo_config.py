@@ -112,6 +112,14 @@ def test_a_motor_adds_its_margins_to_the_figures_of_a_cycle():
     assert 'peak_torque_margin' not in simulated(DRIVE, 60.0)
 
 
+def test_the_continuous_torque_is_that_at_rms_speed_as_in_sizing():
+    found = simulated({**DRIVE, **PLATE, 'motor.rated_rpm': 100.0}, 60.0)
+    assert found['rms_speed_rpm'] > 2.0 * found['mean_speed_rpm']
+    motor = build_drive('drive', {**DRIVE, **PLATE, 'motor.rated_rpm': 100.0}).motor
+    bound = float(motor.continuous_torque(found['rms_speed_rpm'] * RPM))
+    assert found['rms_torque_margin'] == pytest.approx(bound - found['rms_torque'], rel=ROUNDING)
+
+
 def test_a_servo_drive_within_its_limits_costs_what_the_exact_motion_costs():
     found = simulated(SERVO, 60.0)
     live = found['servo']

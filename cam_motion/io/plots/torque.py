@@ -49,10 +49,10 @@ class TorqueCurve(NamedTuple):
     torque: Array
 
     @property
-    def mean_speed(self) -> float:
-        """Mean magnitude of the motor speed over the cycle [rad/s]."""
-        return float(np.trapezoid(np.abs(self.velocity), self.phi) / (
-            self.phi[-1] - self.phi[0]))
+    def rms_speed(self) -> float:
+        """Root mean square of the motor speed over the cycle [rad/s]."""
+        mean = np.trapezoid(self.velocity ** 2, self.phi) / (self.phi[-1] - self.phi[0])
+        return float(np.sqrt(mean))
 
     @property
     def rms_torque(self) -> float:
@@ -104,7 +104,7 @@ def torque_figure(name: str, curves: Sequence[TorqueCurve],
     recorded : tuple[ndarray, ndarray], shape (n,) each
         Recorded motor speeds [rad/s] and torques [N m], drawn as dots.
     motor : ServoMotor, optional
-        The motor, whose limits are drawn behind; each curve then has a cross at its mean speed
+        The motor, whose limits are drawn behind; each curve then has a cross at its RMS speed
         and RMS torque, to be compared with the continuous torque.
     live : ServoCycle, optional
         What a servo drive really does in a cycle, drawn as dots at its setpoints.
@@ -133,7 +133,7 @@ def torque_figure(name: str, curves: Sequence[TorqueCurve],
                 f'RMS {figure_text(curve.rms_torque)} N m, up to {np.abs(rpm).max():.4g} rpm'))
             plane.plot([rpm[peak]], [curve.torque[peak]], 'o', color=colour, markersize=5.0)
             if motor is not None:
-                plane.plot([curve.mean_speed / RPM], [curve.rms_torque], 'X', color=colour,
+                plane.plot([curve.rms_speed / RPM], [curve.rms_torque], 'X', color=colour,
                            markersize=8.0, markeredgecolor='white', zorder=4.0)
         for speeds, torques, text in dots:
             plane.plot(speeds / RPM, torques, '.', color=COLOURS[1], markersize=5.0,
@@ -166,7 +166,7 @@ def _draw_limits(plane: Axes, motor: ServoMotor, slowest: float) -> None:
     top = motor.max_speed
     for curve, style, text in (
             (motor.peak, '-', 'peak torque of the motor'),
-            (motor.continuous, '--', 'continuous torque; crosses: RMS torque at mean speed')):
+            (motor.continuous, '--', 'continuous torque; crosses: RMS torque at RMS speed')):
         knots = [speed for speed in curve.speeds if speed < top]
         speeds = np.array([-top, *(-speed for speed in reversed(knots[1:])), *knots, top])
         torques = curve(speeds)
