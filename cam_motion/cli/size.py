@@ -161,7 +161,9 @@ def _numbers(text: str, least: float, above: bool) -> tuple[float, ...]:
     parts = text.split(':')
     if len(parts) == 3:
         low, high, count = finite_number(parts[0]), finite_number(parts[1]), _count(parts[2])
-        numbers: Sequence[float] = np.linspace(low, high, min(count, _MOST_STEPS)).tolist()
+        if count > _MOST_STEPS:
+            raise argparse.ArgumentTypeError(f'{text!r}: at most {_MOST_STEPS} numbers')
+        numbers: Sequence[float] = np.linspace(low, high, count).tolist()
     else:
         numbers = [finite_number(part) for part in text.split(',')]
     if any(x < least or (above and x == least) for x in numbers):

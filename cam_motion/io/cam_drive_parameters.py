@@ -43,7 +43,7 @@ CAM_DRIVE = (
     _number('motor.rated_rpm', 'Rated speed.', 'rpm', None, above=0.0),
     _number('motor.rated_torque', 'Rated torque; with rated_rpm it stands for the breakdown slip.',
             'N m', None, above=0.0),
-    _number('motor.breakdown_torque', 'Breakdown torque.', 'N m', above=0.0),
+    _number('motor.breakdown_torque', 'Breakdown torque.', 'N m', above=0.0, most=1e6),
     _number('motor.starting_torque', "Torque at rest, to which Kloss' curve is bent; left out it "
             'is that of the curve.', 'N m', None, above=0.0),
     _number('motor.breakdown_slip', 'Slip at breakdown.', '', None, above=0.0, most=1.0),

@@ -49,9 +49,10 @@ def take_parts(given: Mapping[str, Any], table: Iterable[ParameterSpec],
 
     """
     names = part_names(given)
-    own, below = split_below(given, names)
     taken = {spec.name.partition('.')[0] for spec in table}
-    problems = [
+    given, problems = _take_unlisted(given, names, taken)
+    own, below = split_below(given, names)
+    problems += [
         Problem('load', part, 'every part has a name of its own, which is no parameter')
         for part in names if part in taken or list(given['load']).count(part) > 1]
     parts = {}
@@ -61,6 +62,19 @@ def take_parts(given: Mapping[str, Any], table: Iterable[ParameterSpec],
         except ConfigurationError as error:
             problems += [problem.below(part) for problem in error.problems]
     return own, parts, problems
+
+
+def _take_unlisted(given: Mapping[str, Any], names: list[str], taken: set[str],
+                   ) -> tuple[dict[str, Any], list[Problem]]:
+    """Take out what describes a part that the list does not name: one problem for each part."""
+    parts = {path.rpartition('.')[0] for path in given if path.endswith('.type')}
+    lost = sorted(part for part in parts - {*names} if '.' not in part and part not in taken)
+    ghosts = [name for name in names if not any(path.startswith(f'{name}.') for path in given)]
+    rest = {path: value for path, value in given.items() if path.partition('.')[0] not in lost}
+    return rest, [Problem(
+        part, f'a part of type {given[f"{part}.type"]}', 'is described, but load does not name it',
+        f'add it to load{f", instead of {ghosts[0]} perhaps" if ghosts else ""}')
+        for part in lost]
 
 
 def build_part(given: Mapping[str, Any]) -> Part:

@@ -129,6 +129,8 @@ def test_a_place_that_cannot_be_written_is_said(cam_motion, tmp_path):
     ({'spring': {'stiffness': 1.0}}, 'press_drive.spring.type', ''),
     ({'spring': 3.0}, 'press_drive.spring', ''),
     ({'load': ['ghost']}, 'press_drive.ghost.type', ''),
+    ({'load': ['cam', 'slidre', 'spring', 'lever']}, 'press_drive.slider', 'instead of slidre'),
+    ({'motor.breakdown_torque': 1e12}, 'press_drive.motor.breakdown_torque', '1e+06'),
     ({'load': 'cam'}, 'press_drive.load', ''),
     ({'motor.breakdown_slip': None}, 'press_drive.motor.a', 'together'),
     ({'motor.rated_rpm': 1500.0}, 'press_drive.motor.rated_rpm', 'synchronous speed of 1500 rpm'),
