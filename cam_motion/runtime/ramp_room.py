@@ -131,6 +131,6 @@ def _extreme(rates: Array) -> Array:
 
 def _least(left: Array, slope: Array) -> Array:
     """Find per row the largest factor of the slope that is left for; negative where none is."""
-    with np.errstate(divide='ignore', invalid='ignore'):
+    with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
         most = np.where(slope > 0.0, left / slope, np.where(left < 0.0, -1.0, math.inf))
     return np.asarray(np.min(most, axis=1))

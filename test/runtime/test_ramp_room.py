@@ -142,6 +142,8 @@ def test_other_room_softens_the_ramp_under_way_and_leaves_a_steady_shaft_alone()
 @example(5.75, 0.0, True, [(8.0, 'set_speed', -0.14), (1e-9, 'stop', 0.0),
                            (0.42, 'set_speed', 0.1), (0.021, 'run', 0.0),
                            (0.052, 'set_speed', 1.0)])
+# a speed so small that its reciprocal overflows
+@example(5.0, 0.0, True, [(0.0, 'set_speed', 2.2250738585e-313)])
 @given(st.floats(5.0, 25.0), st.sampled_from([0.0, 1e-3, 0.02]), st.booleans(),
        st.lists(st.tuples(
            st.one_of(st.sampled_from([0.0, 1e-9, 2e-3, 8.0]), st.floats(0.0, 1.0)),
