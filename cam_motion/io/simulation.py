@@ -58,7 +58,7 @@ def simulate(machine: Machine, document: bool = True, tell: Progress = lambda _:
     Returns
     -------
     dict[str, dict[str, Any]]
-        Results by drive; see README for the keys.
+        Results by drive; see doc/json.md for the keys.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def orbit_figures(settings: CamDriveSettings, orbit: Orbit) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        See README for the keys.
+        See doc/json.md for the keys.
 
     """
     low, high = orbit.speeds
@@ -266,7 +266,7 @@ def start_up_figures(settings: CamDriveSettings, orbit: Orbit, run: StartUp) -> 
     Returns
     -------
     dict[str, Any]
-        See README for the keys.
+        See doc/json.md for the keys.
 
     """
     drive, contact = settings.drive, run.least_contact(settings.base)

@@ -261,7 +261,7 @@ def sizing_as_data(sized: SizedDrive) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        See README for the keys.
+        See doc/json.md for the keys.
 
     """
     sizing, smallest = sized.sizing, sized.flywheel
