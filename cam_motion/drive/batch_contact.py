@@ -29,7 +29,7 @@ def least_follower_force(motions: Motions, table: LoadTable) -> Array:
     Returns
     -------
     ndarray, shape (n,)
-        Force [N], to about a thousandth of its swing; negative where the follower would lift off.
+        Force [N], to two thousandths of its swing; negative where the follower would lift off.
 
     Notes
     -----

@@ -30,7 +30,7 @@ POINTS = 8
 """Gauss points per cell: order 16; where Q is too rough for them, cells are halved."""
 
 
-_DENSE = 17  # places per element, of at most 60 degrees, at which contact forces are looked at
+_DENSE = 9  # places per element, of at most 60 degrees, at which contact forces are looked at
 
 
 @dataclass(frozen=True)

@@ -69,8 +69,8 @@ class OrbitTable(NamedTuple):
     peak_motor_torque : ndarray
         Greatest magnitude of the torque at the motor shaft [N m].
     least_follower_force : ndarray
-        Least force that presses the follower on the cam, along its own way, to about a
-        thousandth of its swing [N]; negative where it would lift off.
+        Least force that presses the follower on the cam, along its own way, to two
+        thousandths of its swing [N]; negative where it would lift off.
     multiplier : ndarray
         By how much a disturbance of the energy is multiplied in a revolution [-].
 
