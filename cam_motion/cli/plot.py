@@ -22,6 +22,7 @@ from cam_motion.errors import ConfigurationError, Problem
 from cam_motion.io.config import read_sections
 from cam_motion.io.machine import build_machine, Machine
 from cam_motion.io.summary import turning_drive, with_speed
+from cam_motion.io.turn import repeats
 from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.units import RPM
 
@@ -109,7 +110,7 @@ def _pictures(machine: Machine, only: str | None,
     for name, axis in axes.items():
         pictures.append((f'cam_{name}', partial(profile_figure, axis, speeds[0])))
     for name, settings in machine.drives.items():
-        if settings.axis in axes:
+        if settings.axis in axes and repeats(axes[settings.axis]):
             curves = [torque_curve(settings, axes[settings.axis], omega) for omega in speeds]
             pictures.append((f'torque_{name}', partial(
                 torque_figure, name, curves, motor=settings.motor)))

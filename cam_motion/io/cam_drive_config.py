@@ -124,8 +124,7 @@ def build_cam_drive(name: str, given: Mapping[str, Any],
         motor.breakdown_torque if brake is None else brake, values, tracks)
 
 
-def cam_on_shaft(axis: CoupledAxis, why: str = 'the cam of this drive sits on its shaft',
-                 ) -> CamProfile:
+def cam_on_shaft(axis: CoupledAxis) -> CamProfile:
     """
     Give the cam by which an axis loads the shaft.
 
@@ -133,8 +132,6 @@ def cam_on_shaft(axis: CoupledAxis, why: str = 'the cam of this drive sits on it
     ----------
     axis : CoupledAxis
         The axis.
-    why : str
-        Why its coupling matters.
 
     Returns
     -------
@@ -151,7 +148,7 @@ def cam_on_shaft(axis: CoupledAxis, why: str = 'the cam of this drive sits on it
     if axis.values['follows'] != 'shaft' or len(layout.active) > 1 or any(
             layout.couplings[cam] != Coupling() for cam in layout.active):
         raise ConfigurationError([Problem(
-            'axis', axis.name, f'{why}: one cam must follow the '
+            'axis', axis.name, 'the cam of this drive sits on its shaft: one cam must follow the '
             'shaft with ratio 1 and scale 1, without phase and offset',
             'put the phase into its segments, or name another axis')])
     return axis.profile

@@ -31,6 +31,7 @@ from cam_motion.io.parameters import check_values
 from cam_motion.io.servo_config import build_motor, build_servo, ServoSettings
 from cam_motion.io.servo_parameters import FOLLOW_DRIVE, SERVO, SERVO_DRIVE
 from cam_motion.io.tracks import take_tracks, TrackSettings
+from cam_motion.io.turn import turn_profile
 from cam_motion.motion.diagram import TimingDiagram
 from cam_motion.runtime.ramp import RampLimits
 from cam_motion.runtime.shaft import Shaft
@@ -303,8 +304,7 @@ def build_machine(sections: Mapping[str, Values]) -> Machine:
         settings = build_drive(name, given)
         axis = axes.get(settings.axis)
         if settings.parts and axis is not None:
-            cam = cam_on_shaft(axis, 'the parts of a load are looked at over the cam itself')
-            if found := lever_problems(settings.parts, cam):
+            if found := lever_problems(settings.parts, turn_profile(axis)):
                 raise ConfigurationError(found)
         return settings
 

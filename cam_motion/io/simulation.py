@@ -25,6 +25,7 @@ from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.cam_drive_findings import motion_findings, start_up_findings
 from cam_motion.io.machine import DriveSettings, Machine
 from cam_motion.io.summary_data import margins_as_data
+from cam_motion.io.turn import turn_profile
 from cam_motion.runtime.ticks import NANOSECONDS
 from cam_motion.units import DEGREE, RPM, TURN
 import numpy as np
@@ -97,7 +98,7 @@ def _cycle(machine: Machine, settings: DriveSettings) -> dict[str, Any]:
         raise ConfigurationError([Problem(
             f'{machine.master.name}.speed_cpm', 0.0, 'there is no cycle without a speed',
             'give the speed at which the drives are to be simulated')])
-    profile = machine.diagram.axes[settings.axis].profile
+    profile = turn_profile(machine.diagram.axes[settings.axis], settings.name)
     figures = cycle_figures(settings.drive, profile, machine.master.speed)
     found: dict[str, Any] = {
         'peak_torque': figures.peak_torque, 'rms_torque': figures.rms_torque,
@@ -146,7 +147,7 @@ def live_cycle(machine: Machine, settings: DriveSettings) -> ServoCycle | None:
     if settings.servo is None:
         return None
     return servo_cycle(
-        settings.servo.axis(settings.drive), machine.diagram.axes[settings.axis].profile,
+        settings.servo.axis(settings.drive), turn_profile(machine.diagram.axes[settings.axis]),
         machine.master.speed, machine.master.values['rate_hz'])
 
 

@@ -32,6 +32,7 @@ from cam_motion.io.cam_drive_config import CamDriveSettings
 from cam_motion.io.catalogue import Catalogue
 from cam_motion.io.machine import DriveSettings, Machine
 from cam_motion.io.plain import finite
+from cam_motion.io.turn import turn_profile
 import numpy as np
 
 CONFIGURED = 'as configured'
@@ -164,8 +165,8 @@ def _size_drive(machine: Machine, settings: DriveSettings, catalogue: Catalogue,
     drive, motor = settings.drive, settings.motor
     # where the motor is known, what else is on its shaft stays there
     coupling = 0.0 if motor is None else drive.motor_inertia - motor.inertia
-    load = FollowerLoad(drive, machine.diagram.axes[settings.axis].profile, machine.master.speed,
-                        coupling)
+    profile = turn_profile(machine.diagram.axes[settings.axis], settings.name)
+    load = FollowerLoad(drive, profile, machine.master.speed, coupling)
     own = Gearbox(drive.gear_ratio, drive.efficiency)
     servos = catalogue.servos if motor is None else (
         ServoChoice(CONFIGURED, motor, float(motor.continuous(motor.rated_speed))

@@ -29,6 +29,7 @@ from cam_motion.io.linkage_config import build_linkages, linkage_names
 from cam_motion.io.linkage_settings import LinkageSettings
 from cam_motion.io.machine import build_machine, Machine
 from cam_motion.io.parameters import check_values
+from cam_motion.io.turn import repeats, turn_profile
 from cam_motion.motion.continuity import Continuity, continuity_of
 from cam_motion.motion.diagram import Axis, TimingDiagram
 from cam_motion.motion.limits import QUANTITIES, SpeedBound
@@ -227,21 +228,27 @@ def check_sections(sections: Mapping[str, Values], speed_cpm: float | None = Non
 
 
 def _warnings(machine: Machine) -> tuple[Problem, ...]:
-    """Say what to mind of the drives that turn a cam shaft, if anything."""
-    if not machine.cam_drives:
-        return ()
-    from cam_motion.io.cam_drive_findings import findings
-    return tuple(Problem(name, None, text) for name, drive in machine.cam_drives.items()
-                 for text in findings(drive))
+    """Say what to mind of the drives, if anything."""
+    found: list[Problem] = []
+    for name, drive in machine.drives.items():
+        try:
+            turn_profile(machine.diagram.axes[drive.axis], name)
+        except ConfigurationError as error:
+            found += error.problems
+    if machine.cam_drives:
+        from cam_motion.io.cam_drive_findings import findings
+        found += [Problem(name, None, text) for name, drive in machine.cam_drives.items()
+                  for text in findings(drive)]
+    return tuple(found)
 
 
 def _margins(machine: Machine) -> dict[str, LimitFigures]:
     """Compare the drives that have a motor with its limits, at the set speed."""
     omega = machine.master.speed
     return {
-        name: limit_figures(
-            drive.drive, drive.motor, machine.diagram.axes[drive.axis].profile, omega)
-        for name, drive in machine.drives.items() if drive.motor is not None and omega}
+        name: limit_figures(drive.drive, drive.motor, turn_profile(axis), omega)
+        for name, drive in machine.drives.items() if drive.motor is not None and omega
+        and repeats(axis := machine.diagram.axes[drive.axis])}
 
 
 def _set_speed(sections: Mapping[str, Values], master: str, turning: str) -> float:

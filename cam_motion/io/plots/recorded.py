@@ -16,6 +16,7 @@ from cam_motion.io.plots.motor import recorded_motor_figure
 from cam_motion.io.plots.style import COLOURS, exact_curve, GREY, new_figure, styled
 from cam_motion.io.plots.torque import torque_curve, torque_figure
 from cam_motion.io.report import Report
+from cam_motion.io.turn import repeats
 from cam_motion.motion.piece import Array
 from cam_motion.units import DEGREE, rate_text, RPM, TURN
 from matplotlib.axes import Axes
@@ -149,9 +150,9 @@ def recorded_torque_figure(report: Report, name: str) -> Figure:
     settings = machine.drives[name]
     axis = machine.diagram.axes[settings.axis]
     drive = report.drives[name]
-    figure = torque_figure(name, [torque_curve(settings, axis, report.top_speed)], (
-        drive.motor_speed, drive.motor_torque), settings.motor)
-    return figure
+    curves = [torque_curve(settings, axis, report.top_speed)] if repeats(axis) else []
+    return torque_figure(
+        name, curves, (drive.motor_speed, drive.motor_torque), settings.motor)
 
 
 def shaft_figure(report: Report) -> Figure:

@@ -25,6 +25,7 @@ from cam_motion.io.plots.style import (
     new_figure,
     styled,
 )
+from cam_motion.io.turn import turn_profile
 from cam_motion.motion.diagram import Axis
 from cam_motion.motion.piece import Array
 from cam_motion.units import DEGREE, RPM
@@ -81,8 +82,9 @@ def torque_curve(settings: DriveSettings, axis: Axis, omega: float) -> TorqueCur
 
     """
     drive = settings.drive
-    angles, position = exact_curve(axis.profile, 0, drive.edges)
-    slope, bend = (exact_curve(axis.profile, order, drive.edges)[1] for order in (1, 2))
+    profile = turn_profile(axis)
+    angles, position = exact_curve(profile, 0, drive.edges)
+    slope, bend = (exact_curve(profile, order, drive.edges)[1] for order in (1, 2))
     phi = angles * DEGREE
     state: DriveState = drive.follow_all(position, slope * omega, bend * omega * omega, phi)
     return TorqueCurve(omega / RPM, phi, np.asarray(state.motor_velocity),
