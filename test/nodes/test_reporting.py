@@ -27,7 +27,7 @@ MASTER_KEYS = {
     'worst_lateness_us', 'clock_restarts'}
 AXIS_KEYS = {
     'setpoints', 'refused_points', 'points_of_another_shaft', 'missed_ticks', 'shaft_age_s',
-    'position', 'velocity', 'acceleration', 'unit'}
+    'position', 'velocity', 'acceleration', 'unit', 'worst_answer_us'}
 DRIVE_KEYS = {'states', 'refused_points', 'motor_torque', 'motor_speed_rpm', 'peak_motor_torque'}
 
 
