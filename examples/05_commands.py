@@ -92,4 +92,5 @@ rclpy.try_shutdown()
 
 recording = read_recording(OUT / 'commands')
 save(run_time_figure(recording, ['press', 'knife']), OUT / 'commands.png')
-print('states of the knife:', ', '.join(text for _, text in recording.states['knife']))
+states = [text for _, text in recording.states['knife']]
+print('states of the knife:', ', '.join(states[states.index('in_sync'):]))
