@@ -33,6 +33,7 @@ _CAM = {
     'rest.end_deg': 360.0,
 }
 _WARM_UP = 2.0  # seconds until discovery and the first ramp are over
+_RECOVERY = 0.5  # and until the ticks that the collector has held up are made good or given up
 
 
 def main() -> None:
@@ -68,6 +69,7 @@ def main() -> None:
     _spin(executor, _WARM_UP)
     gc.collect()
     gc.freeze()  # as the runner of the nodes does
+    _spin(executor, _RECOVERY)
     latencies.clear()
     master._ticker._tick = partial(timed, master._ticker._tick)
     schedule = master._ticker.schedule
