@@ -17,6 +17,8 @@ from cam_motion.nodes.managed_node import ManagedNode
 from cam_motion.nodes.qos import LATCHED
 from cam_motion.runtime.cam_switch import CamSwitch
 from cam_motion.runtime.point import Point
+from cam_motion.runtime.ticks import NANOSECONDS
+from cam_motion.runtime.time_relation import TimeRelation
 from rclpy.publisher import Publisher
 from rclpy.timer import Timer
 from std_msgs.msg import Bool
@@ -71,6 +73,8 @@ class TrackOutput:
         self._node = node
         self._last_time = 0.0
         self._heard = 0  # when the last tick came, by the clock of the timer [ns]
+        self._stamp = 0  # and when it was due: those of a shaft brought to rest come late [ns]
+        self._relation = TimeRelation()
         self._timer: Timer | None = None  # from the first duration on
         self._looking = False
 
@@ -94,7 +98,7 @@ class TrackOutput:
             self._forget()  # the time base has begun anew
         self._last_time = time
         if self._looking:
-            self._heard = self._node.tick_clock.now().nanoseconds
+            self._note(time)
         for output in self._outputs.values():
             if output.over_position and setpoint is not None:
                 on = output.answer(time, *setpoint[:3])
@@ -107,19 +111,25 @@ class TrackOutput:
 
     def _look(self) -> None:
         """Begin to look for the end of a duration."""
-        self._looking, self._heard = True, self._node.tick_clock.now().nanoseconds
+        self._looking, self._relation = True, TimeRelation()
+        self._note(self._last_time)
         if self._timer is None:
             self._timer = self._node.create_timer(
                 _LOOKS_EVERY, self._expire, clock=self._node.tick_clock)
         else:
             self._timer.reset()
 
+    def _note(self, time: float) -> None:
+        self._heard = self._node.tick_clock.now().nanoseconds
+        self._stamp = self._relation.stamp(round(time * NANOSECONDS), self._heard)
+
     def _expire(self) -> None:
-        silent = 1e-9 * (self._node.tick_clock.now().nanoseconds - self._heard)
+        now = self._node.tick_clock.now().nanoseconds
         timed = [output for output in self._outputs.values() if output.switch.is_timed]
-        if silent > _LOOKS_EVERY:  # else ticks see to it
+        if now - self._heard > _LOOKS_EVERY * NANOSECONDS:  # else ticks see to it
+            time = self._last_time + (now - self._stamp) / NANOSECONDS
             for output in timed:
-                if not output.switch.expire(self._last_time + silent):
+                if not output.switch.expire(time):
                     output.tell(False)
         if not timed and self._timer is not None:
             self._timer.cancel()

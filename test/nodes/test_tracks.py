@@ -7,6 +7,8 @@
 # language governing permissions and limitations under the License.
 """Cam tracks as topics: latched, told when they change, switched off when the node ceases."""
 
+from types import SimpleNamespace
+
 from cam_motion.io.axis import build_axis
 from cam_motion.io.config import read_sections
 from cam_motion.nodes.cam_axis import CamAxis
@@ -111,6 +113,28 @@ def test_a_duration_ends_on_time_when_the_shaft_is_lost(world):
         assert world.spin_until(lambda: not told(cut)[-1])
         assert not diagnosed(node)[1]['cut.on']
     assert told(cut) == [False, True, False, True, False]
+
+
+def test_late_ticks_do_not_put_off_the_end_of_a_duration(world, monkeypatch):
+    """Those of a shaft that is brought to rest come when its silence has been noticed."""
+    node = up(world, CamAxis, {**FEEDER, 'cut.duration': 1.0})
+
+    def answer(first, last):
+        for tick in range(first, last):
+            time_ns = tick * PERIOD_NS
+            node.answer(Point(SPEED * time_ns * 1e-9, SPEED, 0.0, *divmod(time_ns, 10**9)))
+    on = round(200.0 / 360.0 * 500) + 1
+    answer(0, on + 1)
+    assert diagnosed(node)[1]['cut.on']
+    begun, clock = node.steady_clock.now().nanoseconds, SimpleNamespace()
+    monkeypatch.setattr(CamAxis, 'tick_clock', property(
+        lambda _: SimpleNamespace(now=lambda: clock)))
+    clock.nanoseconds = begun + 600_000_000
+    answer(on + 1, on + 50)
+    for after_ms, still in ((950, True), (1010, False)):
+        clock.nanoseconds = begun + after_ms * 1_000_000
+        node.outputs._tracks._expire()
+        assert diagnosed(node)[1]['cut.on'] is still
 
 
 def test_who_comes_late_is_told_the_state(world):
