@@ -30,7 +30,6 @@ SEGMENT = 'curve'
 
 _DIGITS = 12
 _SLACK = 1e-9  # rounding of a deviation (relative)
-# What rounding may leave of a step, as a share of the derivative's own peak.
 
 
 @dataclass(frozen=True)
