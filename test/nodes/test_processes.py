@@ -53,7 +53,8 @@ def test_every_node_runs_alone_in_a_namespace_and_ends_when_told(
     reports = world.listen(DiagnosticArray, '/diagnostics')
     nodes = {
         'master': start('master_shaft', *common, '-p', 'rate_hz:=100.0'),
-        'axis': start('cam_axis', *common, '-r', '__node:=knife'),
+        # four processes that start at once may hold each other up: that is no silence
+        'axis': start('cam_axis', *common, '-r', '__node:=knife', '-p', 'master_timeout:=20.0'),
         # no section bears this name: the parameters come one by one
         'drive': start('drive_sim', *common, '-r', '__node:=motor', '-p', 'axis:=knife',
                        '-p', 'radius:=0.05', '-p', 'load_inertia:=1'),
